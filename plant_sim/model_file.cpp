@@ -1,5 +1,7 @@
 #include "plant_sim/model_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -127,6 +129,26 @@ const ParameterInfo* info_of(const ModelFile& model, const std::vector<EffectInf
   return nullptr;
 }
 
+void require_something_to_change(const ModelFile& model, const Change& change,
+                                 const std::string& where) {
+  const std::string effect = change.parameter.substr(0, change.parameter.find('.'));
+  const auto lacks = [&](const ModelFile::Effect& e) { return e.name == effect && !e.present; };
+  if (std::isnan(change.factor) || effect == change.parameter ||
+      std::none_of(model.effects.begin(), model.effects.end(), lacks)) {
+    return;
+  }
+  throw config::schema::bad_config(where, "is a factor on an effect that the model lacks",
+                                   "value, or an [effects." + effect + "] to change");
+}
+
+void require_rod_within(ModelFile& model, double stroke_m, const std::string& where) {
+  const double* start_m = model.value("initial.y_m");
+  if (start_m == nullptr || *start_m > *model.value("stroke_m") || *start_m <= stroke_m) return;
+  throw config::schema::bad_config(
+      where, fmt::format("to {:g} leaves the rod beyond the stroke", stroke_m),
+      fmt::format("initial.y_m = {:g} or more", *start_m));
+}
+
 /// Gives parameters of changes the names that the library prints. Throws unless every change can be
 /// simulated and is the only one of its parameter.
 void check_changes(ModelFile& model, const std::string& file) {
@@ -139,8 +161,10 @@ void check_changes(ModelFile& model, const std::string& file) {
     if (info == nullptr) {
       throw config::schema::bad_config(where, "is no parameter of plant " + model.plant);
     }
+    require_something_to_change(model, change, where);
     ModelFile copy = model;
-    (void)target_of(change, *info, *copy.value(change.parameter), where);
+    const double to = target_of(change, *info, *copy.value(change.parameter), where);
+    if (change.parameter == "stroke_m") require_rod_within(copy, to, where);
     for (std::size_t other = 0; other < i; ++other) {
       if (model.changes[other].parameter != change.parameter) continue;
       throw config::schema::bad_config(where, "is there twice", "one change for a parameter");

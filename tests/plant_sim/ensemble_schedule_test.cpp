@@ -128,7 +128,20 @@ TEST(ModelChanges, AreReadPrintedAndRefusedWhereTheyMakeNoSense) {
   EXPECT_THAT(refused("parameter = \"mass_kg\"\nvalue = -5.0\n"), HasSubstr("out of range"));
   EXPECT_THAT(refused("parameter = \"mass_kg\"\nfactor = 1e12\n"), HasSubstr("out of range"));
   EXPECT_THAT(refused("parameter = \"friction.coulomb_N\"\nfactor = 2.0\n"),
+              HasSubstr("is a factor on an effect that the model lacks"));
+  EXPECT_THAT(refused("parameter = \"friction.stribeck_mps\"\nfactor = 2.0\n"),
+              HasSubstr("or an [effects.friction] to change"));
+  EXPECT_THAT(refused("parameter = \"friction.coulomb_N\"\nfactor = 2.0\n"
+                      "[effects.friction]\nstatic_N = 5.0\n"),
               HasSubstr("has a factor, and the parameter is 0"));
+  EXPECT_EQ(refused("parameter = \"friction.static_N\"\nfactor = 2.0\n"
+                    "[effects.friction]\nstatic_N = 5.0\n"),
+            "");
+  // the rod starts at 0.305 m
+  EXPECT_THAT(refused("parameter = \"stroke_m\"\nvalue = 0.1\n"),
+              HasSubstr("to 0.1 leaves the rod beyond the stroke; allowed: initial.y_m = 0.305"));
+  EXPECT_THAT(refused("parameter = \"stroke_m\"\nfactor = 0.2\n"), HasSubstr("beyond the stroke"));
+  EXPECT_EQ(refused("parameter = \"stroke_m\"\nvalue = 0.4\n"), "");
   EXPECT_THAT(
       refused("parameter = \"mass_kg\"\nvalue = 60.0\nramp_s = 1.0\ntime_constant_s = 1.0\n"),
       HasSubstr("both ramp_s and time_constant_s"));

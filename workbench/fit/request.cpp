@@ -157,7 +157,8 @@ PreparedFit prepare(const FitRequest& request) {
       request.fit == "all" ? greybox::Split::blocks : greybox::parse_split(request.fit);
   problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);
   require_motion(problem.data);
-  for (const Dataset& record : problem.data.records) {
+  for (Dataset& record : problem.data.records) {
+    present::note_changes(problem.model, record);
     for (const std::string& note : present::notes_of(record))
       out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);

@@ -2,9 +2,63 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "config/schema/joined.h"
+#include "config/units/quantity.h"
+
 namespace workbench::present {
 
 namespace greybox = estimator::greybox;
+
+namespace {
+
+/// "mass_kg at 10 s"
+std::string change_words(const plant_sim::Change& change) {
+  return fmt::format("{} at {:.6g} s", change.parameter, change.at_s);
+}
+
+/// How the change cannot be that of this record; empty: it can.
+std::string misfit(const plant_sim::ModelFile& model, const plant_sim::Change& change,
+                   const greybox::Dataset& record) {
+  const double begin_s = record.t_s.front();
+  const double end_s = record.t_s.back();
+  if (change.at_s > end_s) {
+    return fmt::format("this record ends at {:.6g} s: it never sets in", end_s);
+  }
+  if (change.at_s < begin_s) {
+    return fmt::format("this record begins at {:.6g} s: it has set in before", begin_s);
+  }
+  if (change.parameter != "stroke_m") return "";
+  plant_sim::ModelFile copy = model;
+  const double to_m =
+      std::isnan(change.value) ? change.factor * *copy.value("stroke_m") : change.value;
+  const auto after = std::lower_bound(record.t_s.begin(), record.t_s.end(),
+                                      change.at_s + change.ramp_s + 3.0 * change.time_constant_s) -
+                     record.t_s.begin();
+  const auto most_m = std::max_element(record.y_m.begin() + after, record.y_m.end());
+  if (most_m == record.y_m.end() || *most_m <= to_m) return "";
+  return fmt::format("to {}: the rod is at {} after it", config::units::length_words(to_m),
+                     config::units::length_words(*most_m));
+}
+
+}  // namespace
+
+void note_changes(const plant_sim::ModelFile& model, greybox::Dataset& record) {
+  std::vector<std::string> fitting;
+  for (const plant_sim::Change& change : model.changes) {
+    const std::string why = misfit(model, change, record);
+    if (why.empty()) {
+      fitting.push_back(change_words(change));
+    } else {
+      record.notes.push_back("the model changes " + change_words(change) + ", " + why);
+    }
+  }
+  if (fitting.empty()) return;
+  record.notes.push_back("the model changes " + config::schema::listed(fitting) +
+                         ": that is of the one record in which it happened");
+}
 
 std::vector<std::string> notes_of(const greybox::Dataset& data) {
   std::vector<std::string> notes = data.notes;

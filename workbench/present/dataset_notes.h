@@ -5,10 +5,16 @@
 #include <vector>
 
 #include "estimator/greybox/dataset.h"
+#include "plant_sim/model_file.h"
 
 namespace workbench::present {
 
 /// Notes of the record's reader, then gaps and samples left out.
 [[nodiscard]] std::vector<std::string> notes_of(const estimator::greybox::Dataset& data);
+
+/// Adds to the record's notes that the model's changes belong to one record, and each change that
+/// this record does not have: before its begin, after its end, or of a stroke that its rod is
+/// beyond.
+void note_changes(const plant_sim::ModelFile& model, estimator::greybox::Dataset& record);
 
 }  // namespace workbench::present

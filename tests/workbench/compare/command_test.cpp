@@ -93,6 +93,20 @@ class CompareCommand : public testing::Test {
 
 double bias(double, double, double) { return 0.002; }
 
+TEST_F(CompareCommand, NotesAChangeThatTheRecordDoesNotReach) {
+  const std::string record = written(compare_test::servo_record(bias));
+  const std::string model =
+      written("changed.toml", text_of(kModel) +
+                                  "\n[[change]]\nparameter = \"gain_mps_per_V\"\n"
+                                  "factor = 1.1\nat_s = 500.0\n");
+  EXPECT_THAT(
+      json_of({model, record}).at("notes").dump(),
+      testing::AllOf(HasSubstr("the model changes gain_mps_per_V at 500 s, this record ends"),
+                     testing::Not(HasSubstr("one record"))));
+  EXPECT_THAT(json_of({kModel, record}).at("notes").dump(),
+              testing::Not(HasSubstr("the model changes")));
+}
+
 TEST_F(CompareCommand, WritesTheFixedKeysInSiUnits) {
   const nlohmann::json out = json_of(with_no_lag(written(compare_test::servo_record(bias))));
   // e = b/l (1 - 0.9 exp(-l t)) from half a second on, when the model that was led at 10 l to a
