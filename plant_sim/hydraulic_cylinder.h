@@ -11,8 +11,8 @@
 //   fB, zeta        frequency at which the spool's amplitude has fallen by 3 dB; damping ratio
 //
 // The axis is inclined by a: upwards when it extends for a > 0, with the weight m g sin a. A spool
-// whose faster pole is beyond the step's resolution (2 zeta wv h > 4.5) is a first-order lag of the
-// rate wv / (2 zeta): damping ratios of 10 and more are just that. xN is of no influence on
+// with a damping ratio of 10 or more is a first-order lag of the rate wv / (2 zeta), which delays
+// as much: its faster pole, 400 times as fast and more, is left out. xN is of no influence on
 // command, position and pressures: it gives spool_m and the parameters of effects in metres of
 // spool travel a scale.
 //
@@ -21,6 +21,7 @@
 #pragma once
 
 #include "plant_sim/four_way_cylinder.h"
+#include "plant_sim/guard.h"
 
 namespace plant_sim {
 
@@ -100,15 +101,17 @@ struct TwoAreaDesign {
 
   static SpoolDynamics<S> spool(const Parameters& p, double step_s) {
     constexpr double kTwoPi = 6.283185307179586;
-    constexpr double kUnresolved = 4.5;  // three parts of a step
+    constexpr double kFirstOrder = 10.0;
+    // rate times the step that the finest division of a step follows
+    constexpr double kResolved = limits::kRateStep * limits::kMostDivisions;
     const S zeta = p.valve_damping_ratio;
     const S k = S(2.0) * zeta * zeta - S(1.0);
     const S wv = S(kTwoPi) * p.valve_bandwidth_Hz * sqrt(k + sqrt(k * k + S(1.0)));
     const S fast = S(2.0) * zeta * wv;
-    const auto lags = fast * S(step_s) > S(kUnresolved);
+    const auto lags = max(zeta * S(1.0 / kFirstOrder), fast * S(step_s / kResolved)) >= S(1.0);
     const S zero = 0.0;
     return {p.rated_travel_m / p.rated_command_V, select(lags, zero, wv), select(lags, zero, fast),
-            select(lags, wv / (S(2.0) * zeta), zero)};
+            select(lags, min(wv / (S(2.0) * zeta), S(kResolved / step_s)), zero)};
   }
 
   static S weight_N(const Parameters& p, const S& mass_kg) {

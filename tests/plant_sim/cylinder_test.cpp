@@ -223,6 +223,51 @@ TEST(HydraulicCylinder, HasAFirstOrderLagFromADampingOf10On) {
   }
 }
 
+/// An underdamped spool is one at any step: its step response at 5 ms, by the closed form, as the
+/// bandwidth passes what a whole step resolves.
+TEST(HydraulicCylinder, HasAnUnderdampedSpoolAtCoarseSteps) {
+  for (const double zeta : {0.4, 0.7, 0.9}) {
+    for (double frequency_Hz = 60.0; frequency_Hz < 300.0; frequency_Hz += 7.0) {
+      Cylinder::Parameters p;
+      p.valve_bandwidth_Hz = frequency_Hz;
+      p.valve_damping_ratio = zeta;
+      auto plant = ready(p, 5e-3);
+      plant->step(1.0);
+      const double k = 2.0 * zeta * zeta - 1.0;
+      const double wv = 2.0 * kPi * frequency_Hz * std::sqrt(k + std::sqrt(k * k + 1.0));
+      const double rings = wv * std::sqrt(1.0 - zeta * zeta);
+      const double expected =
+          1.0 - std::exp(-zeta * wv * 5e-3) *
+                    (std::cos(rings * 5e-3) + zeta * wv / rings * std::sin(rings * 5e-3));
+      EXPECT_NEAR(plant->state.spool_m / 1e-4, expected, 0.07) << zeta << " " << frequency_Hz;
+    }
+  }
+}
+
+/// A fit of bandwidth or damping meets no jump, neither where a step can no longer be whole nor at
+/// the damping from which the spool is a lag.
+TEST(HydraulicCylinder, MovesTheSameWhereverTheSpoolsDynamicsAreDividedOrLeftOut) {
+  const auto position_m = [](double frequency_Hz, double zeta) {
+    Cylinder::Parameters p;
+    p.valve_bandwidth_Hz = frequency_Hz;
+    p.valve_damping_ratio = zeta;
+    auto plant = ready(p, 2e-3);
+    for (int k = 0; k < 200; ++k) plant->step(4.0 * std::sin(0.05 * k));
+    return plant->state.y_m;
+  };
+  for (const double zeta : {0.5, 0.8, 1.0, 2.0, 5.0}) {
+    for (double frequency_Hz = 5.0; frequency_Hz < 400.0; frequency_Hz *= 1.01) {
+      const double step_m = position_m(frequency_Hz * 1.001, zeta) - position_m(frequency_Hz, zeta);
+      // a thousandth more bandwidth is a thousandth less lag, which is as 1 / bandwidth
+      EXPECT_LT(std::abs(step_m) * frequency_Hz, 2e-4) << zeta << " " << frequency_Hz;
+    }
+  }
+  for (const double frequency_Hz : {2.0, 20.0, 100.0}) {
+    const double step_m = position_m(frequency_Hz, 10.001) - position_m(frequency_Hz, 9.999);
+    EXPECT_LT(std::abs(step_m), 5e-6) << frequency_Hz;
+  }
+}
+
 TEST(HydraulicCylinder, HasASecondOrderWhereItsFasterPoleIsToBeSeen) {
   Cylinder::Parameters p;
   p.valve_damping_ratio = 2.0;
