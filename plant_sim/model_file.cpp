@@ -129,6 +129,18 @@ const ParameterInfo* info_of(const ModelFile& model, const std::vector<EffectInf
   return nullptr;
 }
 
+/// Throws for a prior of a value that has no relative standard deviation: it would free nothing.
+void check_priors(const ModelFile& model, const std::string& file) {
+  for (std::size_t i = 0; i < model.priors.size(); ++i) {
+    const NamedValue& value = model.parameters[i];
+    if (!(model.priors[i].value > 0.0) || value.value > 0.0) continue;
+    throw config::schema::bad_config(
+        fmt::format("{}: [priors] {}", file, value.name),
+        fmt::format("is relative to {} = {:g}, which no fit can free", value.name, value.value),
+        "no prior, 0, or a value above 0");
+  }
+}
+
 void require_something_to_change(const ModelFile& model, const Change& change,
                                  const std::string& where) {
   const std::string effect = change.parameter.substr(0, change.parameter.find('.'));
@@ -327,6 +339,7 @@ ModelFile read_model(const config::schema::Document& document) {
   for (const formula::FormulaEffect& effect : model.formula_effects) {
     check_declared(model, effect, document.name());
   }
+  check_priors(model, document.name());
   check_changes(model, document.name());
   const double* stroke_m = model.value("stroke_m");
   if (stroke_m != nullptr && *model.value("initial.y_m") > *stroke_m) {

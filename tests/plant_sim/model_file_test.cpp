@@ -79,6 +79,26 @@ TEST(ModelFile, KeepsPriorsAndMotionAndSaysWhichValuesItStates) {
   EXPECT_TRUE(std::isnan(stated.parameters[1].value));
 }
 
+TEST(ModelFile, RefusesAPriorOfAValueThatIsNotPositive) {
+  const std::string cylinder =
+      "schema_version = 1\nname = \"a\"\nplant = \"hydraulic_cylinder\"\n[parameters]\n";
+  const auto refusal_of = [&](const std::string& rest) {
+    try {
+      (void)read_model(config::schema::Document::parse(cylinder + rest, "a.toml"));
+    } catch (const config::schema::ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal_of("return_pressure_Pa = 0.0\n[priors]\nreturn_pressure_Pa = 0.1\n"),
+            "a.toml: [priors] return_pressure_Pa: is relative to return_pressure_Pa = 0, which no "
+            "fit can free; allowed: no prior, 0, or a value above 0");
+  EXPECT_NE(refusal_of("inclination_rad = -0.2\n[priors]\ninclination_rad = 0.1\n"), "");
+  EXPECT_NE(refusal_of("[priors]\ninclination_rad = 0.1\n"), "");
+  EXPECT_EQ(refusal_of("[priors]\ninclination_rad = 0.0\n"), "");
+  EXPECT_EQ(refusal_of("inclination_rad = 0.2\n[priors]\ninclination_rad = 0.1\n"), "");
+}
+
 TEST(ModelFile, WritingToAnEffectsParameterAddsTheEffect) {
   ModelFile model;
   *model.value("coupled_slaves.mass_kg") = 20.0;

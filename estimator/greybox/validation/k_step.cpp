@@ -38,6 +38,8 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Datase
   schedule.begin(*ensemble);
   std::vector<double> squares(result.size(), 0.0);
   for (const SampleRange& span : segments(record)) {
+    // at rest under the parameters of that time
+    schedule.apply(*ensemble, record.t_s[span.begin], record.sample_time_s);
     ensemble->start(record.y_m[span.begin]);
     std::vector<std::size_t> synchronised(all.size(), span.begin);
     for (std::size_t k = span.begin; k < span.end; ++k) {
