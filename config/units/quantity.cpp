@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -60,7 +59,7 @@ struct PrintedUnit {
   double from;   ///< used for |value| from here on, SI
 };
 
-std::atomic<Motion> printed_motion{Motion::linear};
+thread_local Motion printed_motion = Motion::linear;
 
 /// "rad" of "m", "mrad" of "mm", "kg m2" of "kg"; other words stay. "rad2" of "m2".
 std::string rotary_word(std::string_view word) {
@@ -149,8 +148,11 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 }  // namespace
 
-Motion motion() noexcept { return printed_motion.load(); }
-void set_motion(Motion motion) noexcept { printed_motion.store(motion); }
+PrintedAxis::PrintedAxis(Motion motion) noexcept : before_(std::exchange(printed_motion, motion)) {}
+
+PrintedAxis::~PrintedAxis() { printed_motion = before_; }
+
+Motion motion() noexcept { return printed_motion; }
 
 std::string moving_part() { return motion() == Motion::linear ? "rod" : "axis"; }
 

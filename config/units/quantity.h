@@ -14,10 +14,21 @@ namespace config::units {
 
 enum class Motion { linear, rotary };
 
-/// Kind of the axis whose quantities this process prints; linear until set. A program works on one
-/// axis at a time: set where its model is loaded, before anything is printed.
+/// While the object lives, its thread prints quantities of an axis that moves so; afterwards again
+/// as before. Each thread has its own: one that made no object prints those of a linear axis.
+class PrintedAxis {
+ public:
+  explicit PrintedAxis(Motion motion) noexcept;
+  ~PrintedAxis();
+  PrintedAxis(const PrintedAxis&) = delete;
+  PrintedAxis& operator=(const PrintedAxis&) = delete;
+
+ private:
+  Motion before_;
+};
+
+/// Motion of the axis whose quantities this thread prints.
 [[nodiscard]] Motion motion() noexcept;
-void set_motion(Motion motion) noexcept;
 
 /// "m" or "rad", "mm/s" or "mrad/s": a unit of the linear axis as the axis that is printed has it.
 [[nodiscard]] std::string axis_unit(std::string_view unit);

@@ -10,7 +10,7 @@
 #include "workbench/add/added_effect.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 namespace {
@@ -23,7 +23,7 @@ struct AddOptions {
 void write_added(const AddOptions& options) {
   const add::AddedEffect added =
       add::add_effect(options.model, options.effect, options.assignments);
-  present::print_as(added.model);
+  const present::PrintedAxis axis(present::motion_of(added.model));
   config::record::write_whole(options.output, plant_sim::print_model(added.model));
   std::printf("%s: %s with %s\n", options.output.c_str(), added.model.name.c_str(),
               added.effect.name.c_str());

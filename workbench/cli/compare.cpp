@@ -24,7 +24,7 @@
 #include "workbench/files/file_check.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 
@@ -98,7 +98,7 @@ void run_live(CompareArguments& a) {
   const StopCondition stop(a.duration_s);
   a.watch.ended = [&stop] { return stop.reached(); };
   a.watch.interrupted = StopCondition::asked;
-  live::watch(present::load_printed_model(a.request.model, a.request.assignments), a.watch);
+  live::watch(plant_sim::load_model(a.request.model, a.request.assignments), a.watch);
 }
 
 void run(CompareArguments& a) {
@@ -107,6 +107,7 @@ void run(CompareArguments& a) {
   files::check_outputs({{"--json", a.json}, {"--report", a.report}, {"--residuals", a.residuals}},
                        {a.request.model, {a.request.record}});
   const compare::PreparedComparison prepared = compare::prepare(a.request);
+  const present::PrintedAxis axis(present::motion_of(prepared.model));
   const validation::Comparison comparison =
       validation::compare(prepared.model, prepared.record, a.request.observer_per_s);
   if (!a.residuals.empty()) write_residuals(comparison, prepared.model, prepared.units, a);

@@ -16,6 +16,7 @@
 #include "workbench/diagnose/progress_line.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 
@@ -41,6 +42,7 @@ void write(const DiagnosisReport& outcome, const DiagnosisRequest& request) {
 
 int run(const DiagnosisRequest& request) {
   diagnose::PreparedDiagnosis prepared = prepare(request);
+  const present::PrintedAxis axis(present::motion_of(prepared.problem.model));
   const Interrupt interrupt;
   diagnose::ProgressLine line(std::cerr, isatty(STDERR_FILENO) == 1,
                               prepared.problem.data.noise_floor_m);

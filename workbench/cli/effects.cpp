@@ -14,7 +14,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/present/json.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 namespace {
@@ -39,12 +39,16 @@ std::vector<std::string> plants_of(const EffectInfo& effect) {
   return names;
 }
 
+std::string printed_unit(const char* name) {
+  return config::units::axis_unit(config::units::unit_of(name));
+}
+
 ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* last) {
   ordered_json list = ordered_json::array();
   for (const ParameterInfo& p : parameters) {
     list.push_back({{"name", p.name},
                     {"what", p.what},
-                    {"unit", config::units::unit_of(p.name)},
+                    {"unit", printed_unit(p.name)},
                     {"min", number_or_null(p.min)},
                     {"max", number_or_null(p.max)},
                     {"typical", number_or_null(p.typical)},
@@ -81,9 +85,14 @@ void print_library(const std::vector<EffectInfo>& listed) {
                 config::schema::joined(plants_of(effect)).c_str());
     for (const ParameterInfo& p : effect.parameters) {
       std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
-                  config::units::unit_of(p.name).c_str(), p.typical, p.what);
+                  printed_unit(p.name).c_str(), p.typical, p.what);
     }
   }
+}
+
+void list_effects(const std::vector<EffectInfo>& listed, const std::string& json) {
+  if (json.empty()) return print_library(listed);
+  present::write_json(library_json(listed).dump(2) + "\n", json);
 }
 
 }  // namespace
@@ -94,11 +103,10 @@ void add_effects(CLI::App& command, int&) {
   command.add_option("MODEL", *model, "a model file, to list its own effects too");
   add_json(command, *json);
   command.callback([json, model] {
-    const std::vector<EffectInfo> listed =
-        model->empty() ? plant_sim::effect_library()
-                       : plant_sim::effects_of(present::load_printed_model(*model));
-    if (json->empty()) return print_library(listed);
-    present::write_json(library_json(listed).dump(2) + "\n", *json);
+    if (model->empty()) return list_effects(plant_sim::effect_library(), *json);
+    const plant_sim::ModelFile file = plant_sim::load_model(*model);
+    const present::PrintedAxis axis(present::motion_of(file));
+    list_effects(plant_sim::effects_of(file), *json);
   });
 }
 

@@ -13,6 +13,7 @@
 #include "workbench/cli/selection_options.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 namespace {
@@ -29,6 +30,7 @@ void write(const fit::FitReport& outcome, const FitRequest& request) {
 
 int run(const FitRequest& request) {
   fit::PreparedFit prepared = prepare(request);
+  const present::PrintedAxis axis(present::motion_of(prepared.problem.model));
   const Interrupt interrupt;
   prepared.options.cancel = Interrupt::requested;
   const bool shown = !request.quiet && isatty(STDERR_FILENO) == 1;

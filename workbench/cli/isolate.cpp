@@ -17,6 +17,7 @@ using isolate::IsolationRequest;
 
 void run(const IsolationRequest& request) {
   const IsolationReport outcome = isolate::isolate(request);
+  const config::units::PrintedAxis axis(outcome.motion);
   if (!request.report.empty()) write_report(to_report(outcome), request.report);
   if (!present::write_json(to_json(outcome), request.json)) {
     std::cout << to_text(outcome, request.all_windows);

@@ -24,7 +24,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/model/kinds.h"
 #include "workbench/model/sheet.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::cli {
 namespace {
@@ -119,7 +119,7 @@ void make(const NewOptions& options, const std::string& command) {
   const plant_sim::ModelFile read =
       plant_sim::read_model(config::schema::Document::parse(text, options.output));
   config::record::write_whole(options.output, text);
-  present::print_as(read);
+  const present::PrintedAxis axis(present::motion_of(read));
   std::cout << options.output << ": " << kind.what << ", plant " << read.plant << "\n";
   for (const model::DerivedQuantity& d : model::derived_quantities(read)) {
     std::cout << fmt::format("  {:<62} {}\n", d.what,

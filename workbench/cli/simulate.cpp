@@ -19,7 +19,7 @@
 #include "workbench/cli/number_check.h"
 #include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
 #include "workbench/simulate/transducers.h"
@@ -144,7 +144,8 @@ config::record::Record simulate_record(const SimulateArguments& arguments,
 
 /// The plant driven by the command of a record; its own controller and instruments have no part.
 config::record::Record simulate_command(const SimulateArguments& a) {
-  const plant_sim::ModelFile model = present::load_printed_model(a.model, a.assignments);
+  const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
+  const present::PrintedAxis axis(present::motion_of(model));
   config::record::ReadOptions reading = a.reading;
   reading.position_optional = true;
   const config::record::Record given = config::record::read_record(a.command, reading);
@@ -261,7 +262,7 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       throw UsageError("--map, --resample: need --command");
     }
     simulate::Scenario scenario = read_scenario(*arguments);
-    present::print_as(scenario.model);
+    const present::PrintedAxis axis(present::motion_of(scenario.model));
     if (!std::isnan(arguments->pressure_noise_Pa)) {
       scenario.instruments.pressure_noise_Pa = arguments->pressure_noise_Pa;
     }

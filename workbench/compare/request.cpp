@@ -6,7 +6,7 @@
 #include "config/schema/error.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::compare {
 namespace {
@@ -35,7 +35,8 @@ greybox::Dataset part_between(const greybox::Dataset& whole, double from_s, doub
 
 PreparedComparison prepare(const CompareRequest& request) {
   PreparedComparison out;
-  out.model = present::load_printed_model(request.model, request.assignments);
+  out.model = plant_sim::load_model(request.model, request.assignments);
+  const present::PrintedAxis axis(present::motion_of(out.model));
   std::vector<config::record::Record> records{
       config::record::read_record(request.record, request.reading)};
   out.units = config::record::units_of(records.front());

@@ -31,7 +31,10 @@ std::string best_words(const selection::SearchProgress& progress, double noise_f
 }  // namespace
 
 ProgressLine::ProgressLine(std::ostream& out, bool renewed, double noise_floor_m)
-    : out_(out), renewed_(renewed), noise_floor_m_(noise_floor_m) {}
+    : out_(out),
+      renewed_(renewed),
+      motion_(config::units::motion()),
+      noise_floor_m_(noise_floor_m) {}
 
 void ProgressLine::rank(const selection::SearchProgress& progress) {
   if (progress.expected.empty() || progress.round == ranked_) return;
@@ -45,6 +48,7 @@ void ProgressLine::rank(const selection::SearchProgress& progress) {
 }
 
 void ProgressLine::show(const selection::SearchProgress& progress) {
+  const config::units::PrintedAxis axis(motion_);
   rank(progress);
   if (!renewed_) {
     if (progress.round == round_ && progress.by_innovations == by_innovations_) return;

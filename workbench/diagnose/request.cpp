@@ -13,7 +13,7 @@
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -90,7 +90,8 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   check_files(request);
   PreparedDiagnosis prepared;
   prepared.split = greybox::parse_split(request.fit);
-  plant_sim::ModelFile model = present::load_printed_model(request.model, request.assignments);
+  plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  const present::PrintedAxis axis(present::motion_of(model));
   fit::FreeParameters parameters = fit::select_parameters(model, request.selection);
   std::vector<std::string> files = request.records;
   files.insert(files.end(), request.holdouts.begin(), request.holdouts.end());

@@ -14,7 +14,7 @@
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::fit {
 namespace {
@@ -144,7 +144,8 @@ PreparedFit prepare(const FitRequest& request) {
   check_files(request);
   greybox::EstimationProblem& problem = out.problem;
   greybox::EstimationOptions& options = out.options;
-  problem.model = present::load_printed_model(request.model, request.assignments);
+  problem.model = plant_sim::load_model(request.model, request.assignments);
+  const present::PrintedAxis axis(present::motion_of(problem.model));
   const FreeParameters choice = select_parameters(problem.model, request.selection);
   problem.parameters = choice.parameters;
   problem.start = choice.start;

@@ -21,7 +21,7 @@
 #include "plant_sim/hydraulics.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/parameter_selection.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::isolate {
 
@@ -277,13 +277,14 @@ IsolationReport isolate(const IsolationRequest& request) {
   files::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn_baseline}},
       {request.model, {request.record}});
-  const plant_sim::ModelFile model =
-      present::load_printed_model(request.model, request.assignments);
+  const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  const present::PrintedAxis axis(present::motion_of(model));
   plant_sim::require_constant(model);
   const Record record = config::record::read_record(request.record, request.reading);
   check(request, record);
   IsolationReport out;
   out.model = request.model;
+  out.motion = config::units::motion();
   out.record = request.record;
   out.command = request.command;
   out.settings = request.settings;

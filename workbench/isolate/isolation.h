@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "config/record/reading.h"
+#include "config/units/quantity.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "workbench/present/report.h"
 
@@ -43,6 +44,7 @@ struct IsolationRequest {
 
 struct IsolationReport {
   std::string model;
+  config::units::Motion motion = config::units::Motion::linear;  ///< of the model's axis
   std::string record;
   std::string command;
   ParameterSet set;

@@ -9,6 +9,7 @@
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/online_residual.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::live {
 namespace {
@@ -81,6 +82,7 @@ class Watcher final : public FeedListener {
 
 void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options) {
   using config::schema::RunError;
+  const present::PrintedAxis axis(present::motion_of(model));
   Watcher watcher(model, options);
   {
     ListenFeed feed(options.url, options.prefix, true, watcher);

@@ -15,6 +15,7 @@
 #include "estimator/greybox/validation/comparison.h"
 #include "estimator/residual/noise_floor.h"
 #include "workbench/present/compare_units.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::live {
 
@@ -64,6 +65,7 @@ void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, do
 }
 
 ResidualFigures OnlineResidual::figures() const {
+  const present::PrintedAxis axis(present::motion_of(model_));
   ResidualFigures f;
   f.rms_m = f.fit_percent = f.noise_floor_m = f.floor_ratio = kNaN;
   f.worst_from = f.worst_to = f.worst_rms_m = kNaN;

@@ -7,7 +7,7 @@
 #include "estimator/greybox/free_parameter.h"
 #include "estimator/greybox/held_scale.h"
 #include "plant_sim/library.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::model {
 namespace {
@@ -94,7 +94,7 @@ Sheet sheet_of(const std::filesystem::path& file, const std::vector<std::string>
   std::vector<std::string> names;
   names.reserve(free.size());
   for (const FreeParameter& p : free) names.push_back(p.name);
-  present::print_as(sheet.model);
+  const present::PrintedAxis axis(present::motion_of(sheet.model));
   sheet.held_scale = estimator::greybox::held_scale_words(sheet.model, names);
   return sheet;
 }

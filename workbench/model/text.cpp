@@ -8,6 +8,7 @@
 #include "plant_sim/library.h"
 #include "workbench/model/sheet.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_axis.h"
 
 namespace workbench::model {
 namespace {
@@ -95,6 +96,7 @@ ordered_json json_of(const std::vector<SheetParameter>& parameters) {
 
 std::string to_text(const Sheet& sheet) {
   const plant_sim::ModelFile& model = sheet.model;
+  const present::PrintedAxis axis(present::motion_of(model));
   std::string text =
       fmt::format("{}: {}, {}, step {}\n\n", model.name, model.plant,
                   model.rotary() ? "rotary" : "linear", value_words("step_s", model.step_s));
@@ -120,6 +122,7 @@ std::string to_text(const Sheet& sheet) {
 
 std::string to_json(const Sheet& sheet) {
   const plant_sim::ModelFile& model = sheet.model;
+  const present::PrintedAxis axis(present::motion_of(model));
   ordered_json out;
   out["name"] = model.name;
   out["plant"] = model.plant;

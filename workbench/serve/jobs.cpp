@@ -12,6 +12,7 @@
 #include "workbench/diagnose/words.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_axis.h"
 #include "workbench/present/text.h"
 
 namespace workbench::serve {
@@ -118,6 +119,7 @@ bool Jobs::fit(fit::FitRequest request, Progress progress, const Done& done) {
   return begin(
       [this, request = std::move(request), progress = std::move(progress)]() mutable {
         fit::PreparedFit prepared = fit::prepare(request);
+        const present::PrintedAxis axis(present::motion_of(prepared.problem.model));
         prepared.options.cancel = [this] { return cancelled_.load(); };
         prepared.options.progress = [&](const estimator::greybox::EstimationProgress& now) {
           progress(fit::progress_words(now), 0, 0);
@@ -133,8 +135,11 @@ bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const
   return begin(
       [this, request = std::move(request), progress = std::move(progress)]() mutable {
         diagnose::PreparedDiagnosis prepared = diagnose::prepare(request);
+        const config::units::Motion motion = present::motion_of(prepared.problem.model);
+        const present::PrintedAxis axis(motion);
         prepared.options.cancel = [this] { return cancelled_.load(); };
         prepared.options.progress = [&](const selection::SearchProgress& now) {
+          const present::PrintedAxis here(motion);  // on whichever thread this is called
           std::string text = "round " + std::to_string(now.round) +
                              (now.screening ? ": screening " : ": fitting ") + now.effect;
           if (!now.best.empty()) text += "; best " + now.best + " " + length(now.best_rms_m);

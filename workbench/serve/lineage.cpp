@@ -35,7 +35,7 @@ ModelNode& Lineage::add(const std::string& model, const std::string& parent,
                         const std::string& what) {
   if (ModelNode* const known = find(model)) return *known;
   nodes.push_back({model, parent, what, "", config::signals::kNaN, config::signals::kNaN,
-                   config::signals::kNaN});
+                   config::signals::kNaN, false});
   return nodes.back();
 }
 
@@ -54,7 +54,8 @@ ordered_json to_json(const Lineage& lineage) {
                      {"record", node.record},
                      {"heldout_m", number_or_null(node.heldout_m)},
                      {"rms_m", number_or_null(node.rms_m)},
-                     {"noise_floor_m", number_or_null(node.noise_floor_m)}});
+                     {"noise_floor_m", number_or_null(node.noise_floor_m)},
+                     {"rotary", node.rotary}});
   }
   return {{"nodes", nodes}, {"commands", lineage.commands}};
 }
@@ -71,6 +72,9 @@ Lineage lineage_of(const ordered_json& json) {
       node.heldout_m = number_in(one, "heldout_m");
       node.rms_m = number_in(one, "rms_m");
       node.noise_floor_m = number_in(one, "noise_floor_m");
+      if (const auto rotary = one.find("rotary"); rotary != one.end() && rotary->is_boolean()) {
+        node.rotary = rotary->get<bool>();
+      }
     }
   }
   if (const auto commands = json.find("commands"); commands != json.end() && commands->is_array()) {

@@ -16,6 +16,7 @@ struct ModelNode {
   double heldout_m = 0.0;
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
+  bool rotary = false;  ///< an axis that turns: its errors are angles
 };
 
 struct Lineage {

@@ -13,6 +13,7 @@
 #include "workbench/add/added_effect.h"
 #include "workbench/compare/comparison_report.h"
 #include "workbench/present/plot_data.h"
+#include "workbench/present/printed_axis.h"
 #include "workbench/present/record_section.h"
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
@@ -92,6 +93,7 @@ std::optional<Study::Shown> Study::shown_of(const std::string& record, const std
   request.ignored = ignored;
   Shown shown;
   shown.prepared = compare::prepare(request);
+  const present::PrintedAxis axis(present::motion_of(shown.prepared.model));
   shown.comparison = validation::compare(shown.prepared.model, shown.prepared.record);
   shown.heldout_m = heldout_of(shown.comparison);
   return shown;
@@ -102,6 +104,7 @@ void Study::note_errors(const std::string& model, const std::optional<Shown>& sh
   ModelNode& node = lineage_.add(model, "", "as it is");
   if (!shown) return;
   node.record = record_;
+  node.rotary = shown->prepared.model.rotary();
   node.heldout_m = shown->heldout_m;
   node.rms_m = shown->comparison.rms_m;
   node.noise_floor_m = shown->comparison.noise_floor_m;
@@ -109,7 +112,11 @@ void Study::note_errors(const std::string& model, const std::optional<Shown>& sh
 
 void Study::show(std::string record, std::string model, std::string trial,
                  std::vector<std::string> ignored) {
-  if (!model.empty()) (void)plant_sim::load_model(folder_.existing(model));
+  config::units::Motion motion = config::units::Motion::linear;
+  for (const std::string& file : {model, trial}) {
+    if (file.empty()) continue;
+    motion = present::motion_of(plant_sim::load_model(folder_.existing(file)));
+  }
   if (!record.empty()) (void)folder_.existing(record);
   std::optional<Shown> accepted = shown_of(record, model, ignored);
   std::optional<Shown> tried = shown_of(record, trial, ignored);
@@ -117,6 +124,7 @@ void Study::show(std::string record, std::string model, std::string trial,
   model_ = std::move(model);
   trial_ = std::move(trial);
   ignored_ = std::move(ignored);
+  motion_ = motion;
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
   note_errors(model_, accepted_);
@@ -200,6 +208,7 @@ const Study::Shown& Study::front() const {
 std::string Study::write_report() {
   const std::string model = tried_ ? trial_ : model_;
   const Shown& shown = front();
+  const present::PrintedAxis axis(motion_);
   std::string file = folder_.fresh_name(stem(model) + ".html");
   std::vector<std::string> words{"spoolwatch", "compare", model, record_};
   add_ignored(words, ignored_);
@@ -282,10 +291,14 @@ void Study::save() const {
   config::record::write_whole(folder_.path_of(kScript), script_of(lineage_));
 }
 
-std::string Study::curves(const View& view) const { return columns(nullptr, view); }
+std::string Study::curves(const View& view) const {
+  const present::PrintedAxis axis(motion_);
+  return columns(nullptr, view);
+}
 
 std::string Study::preview(const ParameterValues& values, const View& view) const {
   const Shown& shown = front();
+  const present::PrintedAxis axis(motion_);
   compare::CompareRequest request = request_of(tried_ ? trial_ : model_);
   request.assignments = assignments_of(values);
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);

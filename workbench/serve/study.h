@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "config/units/quantity.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "workbench/compare/request.h"
 #include "workbench/diagnose/request.h"
@@ -93,6 +94,7 @@ class Study {
   const SessionFolder& folder_;
   std::string record_, model_, trial_;
   std::vector<std::string> ignored_;
+  config::units::Motion motion_ = config::units::Motion::linear;  ///< of the model that is shown
   std::optional<Shown> accepted_, tried_;
   Lineage lineage_;
 };

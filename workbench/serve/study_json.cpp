@@ -11,7 +11,7 @@
 #include "workbench/present/compare_units.h"
 #include "workbench/present/json.h"
 #include "workbench/present/plot_data.h"
-#include "workbench/present/printed_model.h"
+#include "workbench/present/printed_axis.h"
 #include "workbench/present/record_section.h"
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
@@ -114,10 +114,14 @@ ordered_json json_of(const greybox::CatalogueParameter& parameter, double value)
   }
   low = std::max(low, info.min);
   high = std::min(high, info.max);
-  return {{"name", parameter.name},     {"words", config::units::parameter_words(parameter.name)},
-          {"what", info.what},          {"unit", typeset(config::units::unit_of(parameter.name))},
-          {"effect", parameter.effect}, {"value", number_or_null(value)},
-          {"low", number_or_null(low)}, {"high", number_or_null(high)},
+  return {{"name", parameter.name},
+          {"words", config::units::parameter_words(parameter.name)},
+          {"what", info.what},
+          {"unit", typeset(config::units::axis_unit(config::units::unit_of(parameter.name)))},
+          {"effect", parameter.effect},
+          {"value", number_or_null(value)},
+          {"low", number_or_null(low)},
+          {"high", number_or_null(high)},
           {"logarithmic", logarithmic}};
 }
 
@@ -283,7 +287,7 @@ std::string Study::columns(const validation::ModelErrors* changed, const View& v
 }
 
 ordered_json Study::state() {
-  if (accepted_) present::print_as(accepted_->prepared.model);
+  const present::PrintedAxis axis(motion_);
   ordered_json out{{"record", record_}, {"model", model_}, {"trial", trial_}};
   out["ignored"] = ignored_;
   out["files"] = ordered_json::array();
@@ -313,6 +317,8 @@ ordered_json Study::state() {
   out["lineage"] = lineage["nodes"];
   for (ordered_json& node : out["lineage"]) {
     const ModelNode* const known = lineage_.find(node["model"].get<std::string>());
+    const present::PrintedAxis own(known->rotary ? config::units::Motion::rotary
+                                                 : config::units::Motion::linear);
     node["heldout"] = typeset(config::units::length_words(known->heldout_m));
   }
   out["commands"] = lineage["commands"];

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <barrier>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <thread>
 
 namespace config::units {
 namespace {
@@ -48,7 +51,7 @@ TEST(Quantity, LengthsGoFromMicrometresToMetres) {
 }
 
 TEST(Quantity, OfAnAxisThatTurnsHasRadiansAndTorques) {
-  set_motion(Motion::rotary);
+  std::optional<PrintedAxis> axis(Motion::rotary);
   EXPECT_EQ(length_words(2.63e-5), "26.3 urad");
   EXPECT_EQ(speed_words(0.31), "310 mrad/s");
   EXPECT_EQ(words(quantity("mass_kg", 0.006, 1e-4)), "0.00600 +- 0.00010 kg m2");
@@ -60,8 +63,37 @@ TEST(Quantity, OfAnAxisThatTurnsHasRadiansAndTorques) {
   EXPECT_EQ(axis_unit("N s2/m2"), "N m s2/rad2");
   EXPECT_EQ(axis_unit("V"), "V");
   EXPECT_EQ(unit_of("mass_kg"), "kg");  // the name's own
-  set_motion(Motion::linear);
+  axis.reset();
   EXPECT_EQ(length_words(2.63e-5), "26.3 um");
+}
+
+TEST(Quantity, AnInnerAxisEndsWithItsBlock) {
+  const PrintedAxis rotary(Motion::rotary);
+  {
+    const PrintedAxis linear(Motion::linear);
+    EXPECT_EQ(moving_part(), "rod");
+  }
+  EXPECT_EQ(moving_part(), "axis");
+}
+
+TEST(Quantity, EachThreadPrintsItsOwnAxis) {
+  constexpr int kRounds = 100;
+  std::barrier both_set(2);
+  const auto prints = [&](Motion motion, const std::string& expected) {
+    int right = 0;
+    for (int i = 0; i < kRounds; ++i) {
+      const PrintedAxis axis(motion);
+      both_set.arrive_and_wait();
+      right += length_words(2.63e-5) == expected ? 1 : 0;
+      both_set.arrive_and_wait();
+    }
+    EXPECT_EQ(right, kRounds) << expected;
+  };
+  std::thread rotary([&] { prints(Motion::rotary, "26.3 urad"); });
+  prints(Motion::linear, "26.3 um");
+  rotary.join();
+  const PrintedAxis axis(Motion::rotary);
+  std::thread([] { EXPECT_EQ(moving_part(), "rod"); }).join();
 }
 
 TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
