@@ -353,7 +353,9 @@ class Assembly {
                               ": every V of the results stands for 1 " +
                               unit_words(record_.command_unit));
     }
-    const bool as_printed = record_.position_unit == config::units::axis_unit("m");
+    // `_m` stands for rad in everything about an axis that turns.
+    const bool as_printed =
+        record_.position_unit == "m" || record_.position_unit == config::units::axis_unit("m");
     if (!as_printed) {
       record_.notes.push_back("the position is in " + unit_words(record_.position_unit) +
                               ": every " + config::units::axis_unit("m") +

@@ -64,7 +64,8 @@ thread_local Motion printed_motion = Motion::linear;
 /// "rad" of "m", "mrad" of "mm", "kg m2" of "kg"; other words stay. "rad2" of "m2".
 std::string rotary_word(std::string_view word) {
   static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-      {"um", "urad"}, {"mm", "mrad"}, {"m", "rad"}, {"kN", "kN m"}, {"N", "N m"}, {"kg", "kg m2"}};
+      {"um", "urad"}, {"µm", "µrad"}, {"mm", "mrad"}, {"m", "rad"},
+      {"kN", "kN m"}, {"N", "N m"},   {"kg", "kg m2"}};
   for (const auto& [linear, rotary] : kWords) {
     if (word == linear) return std::string(rotary);
     if (linear == "m" && word.size() == 2 && word.front() == 'm' && word.back() >= '2' &&
@@ -164,6 +165,36 @@ std::string axis_unit(std::string_view unit) {
     const std::size_t to = std::min(unit.find_first_of(" /()", from), unit.size());
     out += rotary_word(unit.substr(from, to - from));
     if (to < unit.size()) out += unit[to];
+    from = to + 1;
+  }
+  return out;
+}
+
+std::string axis_words(std::string_view text) {
+  if (motion() == Motion::linear) return std::string(text);
+  static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {"extending", "turning forwards"},
+      {"retracting", "turning backwards"},
+      {"extends", "turns forwards"},
+      {"extension", "forward motion"},
+      {"retraction", "backward motion"},
+      {"force", "torque"},
+      {"forces", "torques"},
+      {"mass", "inertia"},
+      {"rod", "axis"},
+      {"stroke", "angle"}};
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  std::string out;
+  for (std::size_t from = 0; from < text.size();) {
+    std::size_t to = from;
+    while (to < text.size() && letter(text[to])) ++to;
+    const std::string_view word = text.substr(from, to - from);
+    const auto* const known = std::find_if(std::begin(kWords), std::end(kWords),
+                                           [&](const auto& one) { return one.first == word; });
+    out += known == std::end(kWords) ? word : known->second;
+    if (to < text.size()) out += text[to];
     from = to + 1;
   }
   return out;

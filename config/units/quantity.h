@@ -36,6 +36,10 @@ class PrintedAxis {
 /// "rod", or "axis" where it turns.
 [[nodiscard]] std::string moving_part();
 
+/// Text about the linear axis, of the axis that is printed: "force" is "torque" and "extending"
+/// "turning forwards" where it turns.
+[[nodiscard]] std::string axis_words(std::string_view text);
+
 struct Quantity {
   std::string value;
   std::string error;  ///< empty: not known

@@ -28,8 +28,9 @@ void write_added(const AddOptions& options) {
   std::printf("%s: %s with %s\n", options.output.c_str(), added.model.name.c_str(),
               added.effect.name.c_str());
   for (const plant_sim::NamedValue& parameter : added.values.parameters) {
-    std::printf("  %s = %s %s\n", parameter.name.c_str(), add::number_text(parameter.value).c_str(),
-                config::units::unit_of(parameter.name).c_str());
+    const std::string unit = config::units::axis_unit(config::units::unit_of(parameter.name));
+    std::printf("  %s = %s%s%s\n", parameter.name.c_str(),
+                add::number_text(parameter.value).c_str(), unit.empty() ? "" : " ", unit.c_str());
   }
   if (added.neutral) {
     std::printf("  every value is neutral: no influence until one is given or fitted\n");

@@ -85,7 +85,8 @@ void print_library(const std::vector<EffectInfo>& listed) {
                 config::schema::joined(plants_of(effect)).c_str());
     for (const ParameterInfo& p : effect.parameters) {
       std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
-                  printed_unit(p.name).c_str(), p.typical, p.what);
+                  printed_unit(p.name).c_str(), p.typical,
+                  config::units::axis_words(p.what).c_str());
     }
   }
 }

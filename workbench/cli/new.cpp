@@ -122,7 +122,7 @@ void make(const NewOptions& options, const std::string& command) {
   const present::PrintedAxis axis(present::motion_of(read));
   std::cout << options.output << ": " << kind.what << ", plant " << read.plant << "\n";
   for (const model::DerivedQuantity& d : model::derived_quantities(read)) {
-    std::cout << fmt::format("  {:<62} {}\n", d.what,
+    std::cout << fmt::format("  {:<62} {}\n", config::units::axis_words(d.what),
                              std::isnan(d.value) ? "never steady"
                                                  : config::units::words(config::units::quantity(
                                                        d.name, d.value, std::nan(""))));

@@ -54,7 +54,9 @@ std::string in_proportion(double gain_ratio, const greybox::CommandResponse& res
 
 std::string by_a_constant(double offset_mps) {
   return "drifts " + units::speed_words(std::abs(offset_mps)) +
-         (offset_mps < 0.0 ? " towards retraction" : " towards extension");
+         (units::motion() == units::Motion::rotary ? offset_mps < 0.0 ? " backwards" : " forwards"
+          : offset_mps < 0.0                       ? " towards retraction"
+                                                   : " towards extension");
 }
 
 std::string plain_words(const validation::Comparison& c) {
@@ -127,7 +129,7 @@ std::string drift_words(const validation::Comparison& c) {
     const bool text_is_new = text.empty();
     text += (text_is_new ? "" : ", ") + units::speed_words(std::abs(bin->speed_error_mps)) +
             (slower ? " slower" : " faster") + (text_is_new ? " than the model" : "") + " while " +
-            name;
+            units::axis_words(name);
   }
   if (text.empty()) return {};
   const double end_m = c.free_error_m.back();

@@ -98,7 +98,7 @@ std::string plot(const greybox::EstimatedParameter& p) {
   const std::string right = five(most);
   const std::size_t used = left.size() + right.size();
   out += "       " + left + std::string(used < kPlotWidth ? kPlotWidth - used : 1, ' ') + right +
-         " " + config::units::unit_of(p.free.name) + "\n";
+         " " + config::units::axis_unit(config::units::unit_of(p.free.name)) + "\n";
   return out;
 }
 

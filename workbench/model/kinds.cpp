@@ -141,7 +141,7 @@ const std::vector<Kind>& all_kinds() {
                      lag}});
     list.push_back(
         {"rotary-servo",
-         "the same, turning",
+         "turning axis whose command sets the speed; nothing else is known",
          {{"full-speed-rpm", "speed at full command", "drive's set-up, or a try", 1e-3, 1e6, kMust},
           full,
           lag}});
@@ -318,7 +318,9 @@ void rotary_axis(const Answers& a, ModelWriter& w) {
 
 void servo(double full_mps, bool rotary, const Answers& a, ModelWriter& w) {
   const double gain = full_mps / a.at("full-command-V");
-  add_notes(w, "velocity_servo", "the command sets the speed; there is no end of the stroke");
+  add_notes(w, "velocity_servo",
+            rotary ? "the command sets the speed; turning: y in rad"
+                   : "the command sets the speed; there is no end of the stroke");
   w.begin("velocity_servo", rotary);
   w.value("gain_mps_per_V", gain, 0.1,
           fmt::format("full speed over {:g} V", a.at("full-command-V")));

@@ -39,7 +39,7 @@ std::string lines(const std::vector<SheetParameter>& parameters, bool fits) {
     if (!fits && std::isnan(p.value)) continue;
     text += fmt::format("  {:<40} {:<16} {:<24} {:<8} {:<18} {}\n", p.name,
                         value_words(p.name, p.value), si_words(p.name, p.value),
-                        to_string(p.source), fits ? prior_words(p) : "", p.what);
+                        to_string(p.source), fits ? prior_words(p) : "", units::axis_words(p.what));
   }
   return text;
 }
@@ -114,7 +114,7 @@ std::string to_text(const Sheet& sheet) {
   text += "\nWhat follows, to hold beside the data sheets:\n";
   for (const DerivedQuantity& d : sheet.derived) {
     const std::string value = std::isnan(d.value) ? "never steady" : value_words(d.name, d.value);
-    text += fmt::format("  {:<62} {}\n", d.what, value);
+    text += fmt::format("  {:<62} {}\n", units::axis_words(d.what), value);
   }
   if (!sheet.held_scale.empty()) text += "\n" + sheet.held_scale + "\n";
   return text;

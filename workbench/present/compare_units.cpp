@@ -34,13 +34,16 @@ std::string percent(double share) {
 }
 
 std::string bin_text(const std::string& variable, const validation::Bin& bin) {
-  if (!bin.name.empty()) return bin.name;
+  if (!bin.name.empty()) return config::units::axis_words(bin.name);
   const DisplayUnit unit = unit_of(variable);
   return bound(bin.from, unit) + " to " + bound(bin.to, unit);
 }
 
 std::string where(const validation::RegionRange& range) {
-  if (!range.name.empty()) return range.name == "at rest" ? range.name : "while " + range.name;
+  using config::units::axis_words;
+  if (!range.name.empty()) {
+    return range.name == "at rest" ? range.name : "while " + config::units::axis_words(range.name);
+  }
   const DisplayUnit unit = unit_of(range.variable);
   const std::string low = bound(range.from, unit);
   const std::string high = bound(range.to, unit);
@@ -49,14 +52,12 @@ std::string where(const validation::RegionRange& range) {
     if (range.lowest) return "in the first " + high + tail;
     return "from " + low + " to " + high + tail;
   }
-  const bool turning = config::units::motion() == config::units::Motion::rotary;
   if (range.variable == "v") {
     if (range.highest && range.from > 0.0) {
-      return std::string(turning ? "turning on" : "extending") + " faster than " + low + tail;
+      return axis_words("extending") + " faster than " + low + tail;
     }
     if (range.lowest && range.to < 0.0) {
-      return std::string(turning ? "turning back" : "retracting") + " faster than " +
-             bound(-range.to, unit) + tail;
+      return axis_words("retracting") + " faster than " + bound(-range.to, unit) + tail;
     }
   }
   const bool plain = range.variable == "speed";

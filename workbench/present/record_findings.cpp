@@ -90,7 +90,9 @@ SourceColumn source_of(const config::record::Record& record, const std::string& 
 std::vector<std::string> size_findings(const config::record::Record& record) {
   std::vector<std::string> out;
   const auto [low_m, high_m] = greybox::usual_range(record.y_m);
-  if (record.has_position && record.position_unit == "m" && high_m - low_m > kLongest_m) {
+  const bool lengths =
+      record.position_unit == "m" && config::units::motion() == config::units::Motion::linear;
+  if (record.has_position && lengths && high_m - low_m > kLongest_m) {
     const SourceColumn source = source_of(record, "y_m");
     out.push_back(
         fmt::format("the position spans {:.3g} m, more than a stand's stroke: ", high_m - low_m) +
@@ -123,8 +125,8 @@ std::vector<std::string> response_findings(const greybox::CommandResponse& respo
   if (response.against_command()) {
     std::string text = fmt::format(
         "the position moves against the command (speed and command correlate by {:.2f}): is a sign "
-        "turned? A positive command extends",
-        response.correlation);
+        "turned? A positive command {}",
+        response.correlation, config::units::axis_words("extends"));
     if (!position.header.empty()) text += "; " + turning_map(position);
     out.push_back(std::move(text));
   }

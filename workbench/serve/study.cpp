@@ -112,11 +112,13 @@ void Study::note_errors(const std::string& model, const std::optional<Shown>& sh
 
 void Study::show(std::string record, std::string model, std::string trial,
                  std::vector<std::string> ignored) {
-  config::units::Motion motion = config::units::Motion::linear;
-  for (const std::string& file : {model, trial}) {
-    if (file.empty()) continue;
-    motion = present::motion_of(plant_sim::load_model(folder_.existing(file)));
-  }
+  using config::units::Motion;
+  const auto motion_in = [&](const std::string& file) {
+    return file.empty() ? Motion::linear
+                        : present::motion_of(plant_sim::load_model(folder_.existing(file)));
+  };
+  const Motion live = motion_in(model);
+  const Motion motion = trial.empty() ? live : motion_in(trial);
   if (!record.empty()) (void)folder_.existing(record);
   std::optional<Shown> accepted = shown_of(record, model, ignored);
   std::optional<Shown> tried = shown_of(record, trial, ignored);
@@ -125,6 +127,7 @@ void Study::show(std::string record, std::string model, std::string trial,
   trial_ = std::move(trial);
   ignored_ = std::move(ignored);
   motion_ = motion;
+  live_rotary_ = live == Motion::rotary;
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
   note_errors(model_, accepted_);

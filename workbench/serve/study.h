@@ -94,6 +94,7 @@ class Study {
   const SessionFolder& folder_;
   std::string record_, model_, trial_;
   std::vector<std::string> ignored_;
+  bool live_rotary_ = false;  ///< the axis of live_model() turns
   config::units::Motion motion_ = config::units::Motion::linear;  ///< of the model that is shown
   std::optional<Shown> accepted_, tried_;
   Lineage lineage_;

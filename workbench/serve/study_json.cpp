@@ -116,7 +116,7 @@ ordered_json json_of(const greybox::CatalogueParameter& parameter, double value)
   high = std::min(high, info.max);
   return {{"name", parameter.name},
           {"words", config::units::parameter_words(parameter.name)},
-          {"what", info.what},
+          {"what", config::units::axis_words(info.what)},
           {"unit", typeset(config::units::axis_unit(config::units::unit_of(parameter.name)))},
           {"effect", parameter.effect},
           {"value", number_or_null(value)},
@@ -289,6 +289,7 @@ std::string Study::columns(const validation::ModelErrors* changed, const View& v
 ordered_json Study::state() {
   const present::PrintedAxis axis(motion_);
   ordered_json out{{"record", record_}, {"model", model_}, {"trial", trial_}};
+  out["rotary"] = live_rotary_;
   out["ignored"] = ignored_;
   out["files"] = ordered_json::array();
   for (const FolderFile& file : folder_.files()) {

@@ -63,8 +63,12 @@ TEST(Quantity, OfAnAxisThatTurnsHasRadiansAndTorques) {
   EXPECT_EQ(axis_unit("N s2/m2"), "N m s2/rad2");
   EXPECT_EQ(axis_unit("V"), "V");
   EXPECT_EQ(unit_of("mass_kg"), "kg");  // the name's own
+  EXPECT_EQ(axis_words("more when extending, less when retracting"),
+            "more when turning forwards, less when turning backwards");
+  EXPECT_EQ(axis_words("mass, force per command; mass_kg"), "inertia, torque per command; mass_kg");
   axis.reset();
   EXPECT_EQ(length_words(2.63e-5), "26.3 um");
+  EXPECT_EQ(axis_words("the force while extending"), "the force while extending");
 }
 
 TEST(Quantity, AnInnerAxisEndsWithItsBlock) {

@@ -8,12 +8,15 @@ const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;       // what the page remembers
 const STALE_S = 3;
 const FRAME_MS = 160;
-const SPECS = [
-  {height: 240, label: 'position, mm', series: [
+// Of an axis that turns, m stands for rad in every message.
+const LINEAR = {position: 'mm', error: 'µm'};
+const ROTARY = {position: 'mrad', error: 'µrad'};
+const specs = (units) => [
+  {height: 240, label: 'position, ' + units.position, series: [
     {key: 'reference', name: 'reference', tone: 'reference'},
     {key: 'y', name: 'measured', tone: 'measured', width: 2}]},
   {height: 160, label: 'command, V', series: [{key: 'u', name: 'command', tone: 'command'}]},
-  {height: 180, label: 'error of the model, µm', series: [
+  {height: 180, label: 'error of the model, ' + units.error, series: [
     {key: 'error', name: 'measured less model', tone: 'residual'}]},
 ];
 
@@ -72,8 +75,9 @@ function meter(values) {
 
 const shown = (v) => (v == null || !Number.isFinite(v) ? '' : String(+v.toPrecision(4)));
 
-function Meters({meters}) {
-  const names = {reference: 'reference, mm', y: 'position, mm', u: 'command, V', error: 'error, µm'};
+function Meters({meters, units}) {
+  const names = {reference: 'reference, ' + units.position, y: 'position, ' + units.position,
+                 u: 'command, V', error: 'error, ' + units.error};
   return html`
     <table class="meters"><thead><tr><th></th><th>min</th><th>max</th><th>peak</th><th>mean</th></tr></thead>
       <tbody>${KEYS.map((key) => html`<tr><td>${names[key]}</td>
@@ -99,13 +103,13 @@ function Estimates({status}) {
     </section>`;
 }
 
-function Model({status, model}) {
+function Model({status, model, units}) {
   const m = status && status.model;
   if (!model) {
     return html`<section><h2>Model beside the stand</h2>
       <p class="hint">Choose a model in the workbench: it runs along.</p></section>`;
   }
-  const um = (v) => (v == null ? '-' : shown(1e6 * v) + ' µm');
+  const um = (v) => (v == null ? '-' : shown(1e6 * v) + ' ' + units.error);
   return html`
     <section><h2>Model beside the stand</h2>
       <p><b>${model}</b>${status && status.model_note ? ': ' + status.model_note : ''}</p>
@@ -127,6 +131,7 @@ export function Live({feed, link, state}) {
   const [meters, setMeters] = useState({});
   const [held, setHeld] = useState(0);
   const now = useRef();
+  const units = state.rotary ? ROTARY : LINEAR;
   now.current = {span, paused, view};
   if (!kept.current) {
     kept.current = {ring: new Ring(), wants: true, came: 0, aged: null, fresh: false, frozen: null,
@@ -134,7 +139,7 @@ export function Live({feed, link, state}) {
   }
   useEffect(() => {
     const k = kept.current;
-    const stack = new PlotStack(element.current, SPECS, {onZoom: (from, to) => {
+    const stack = new PlotStack(element.current, specs(units), {onZoom: (from, to) => {
       setView(from === null ? null : [k.base + from, k.base + to]);
     }});
     const on = {
@@ -210,7 +215,7 @@ export function Live({feed, link, state}) {
       for (const [name, take] of Object.entries(on)) feed.removeEventListener(name, take);
       stack.end();
     };
-  }, []);
+  }, [units]);
 
   const stale = !link.alive || age.s === null || age.s > STALE_S;
   const health = (status && status.health) || {};
@@ -232,7 +237,7 @@ export function Live({feed, link, state}) {
           ${view && html`<button onClick=${() => setView(null)}>Back to live</button>`}
         </p>
         <div class="stack" ref=${element}></div>
-        <${Meters} meters=${meters} />
+        <${Meters} meters=${meters} units=${units} />
       </div>
       <div class="side">
         <section><h2>Loop</h2>
@@ -243,7 +248,7 @@ export function Live({feed, link, state}) {
           ${status && status.notice && html`<p class="hint">${status.notice}</p>`}
         </section>
         <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} />
-        <${Model} status=${status} model=${state.model} />
+        <${Model} status=${status} model=${state.model} units=${units} />
         <${Estimates} status=${status} />
       </div>
     </main>`;
