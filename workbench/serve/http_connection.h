@@ -174,11 +174,11 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     }
     file_.emplace(std::move(*head_));
     file_->body_limit(limit);
+    request_.upload = std::make_shared<const UploadedFile>(plan.file);
     error_code error;
     file_->get().body().open(plan.file.c_str(), beast::file_mode::write, error);
     if (error)
       return send_last(plain(507, "the file cannot be written: " + error.message() + "\n"));
-    request_.upload = plan.file;
     read_file();
   }
 
@@ -206,9 +206,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     http::async_read_some(stream_, buffer_, *file_, [self](error_code error, std::size_t) {
       if (!error) return self->read_file();
       self->file_.reset();
-      error_code ignored;
-      std::error_code gone;
-      std::filesystem::remove(self->request_.upload, gone);
+      self->request_.upload.reset();
       if (error == http::error::body_limit) {
         return self->send_last(plain(413, "the file is too long\n"));
       }

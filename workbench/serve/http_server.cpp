@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <iostream>
 #include <vector>
 
 #include "workbench/serve/http_connection.h"
@@ -104,7 +105,15 @@ HttpServer::~HttpServer() {
 void HttpServer::run() {
   network_->accept();
   network_->beat();
-  network_->context.run();
+  while (true) {
+    try {
+      network_->context.run();
+      return;
+    } catch (const std::exception& error) {
+      // One request has failed, for want of memory say: the others go on.
+      std::cerr << "spoolwatch serve: " << error.what() << '\n';
+    }
+  }
 }
 
 void HttpServer::stop() { network_->context.stop(); }

@@ -40,10 +40,28 @@ struct HttpHead {
   [[nodiscard]] std::string_view field(std::string_view name) const;
 };
 
+/// A file that took the body of a request. It is removed with this object unless it has been
+/// renamed.
+class UploadedFile {
+ public:
+  explicit UploadedFile(std::filesystem::path file) : file_(std::move(file)) {}
+  ~UploadedFile() {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+  }
+  UploadedFile(const UploadedFile&) = delete;
+  UploadedFile& operator=(const UploadedFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+};
+
 struct HttpRequest {
   HttpHead head;
   std::string body;
-  std::filesystem::path upload;  ///< the file that took the body; empty: none
+  std::shared_ptr<const UploadedFile> upload;  ///< null: the body is text
 };
 
 struct HttpResponse {

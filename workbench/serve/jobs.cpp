@@ -108,6 +108,8 @@ bool Jobs::begin(std::function<JobResult()> work, const Done& done) {
       result.error = "not enough memory for this record";
     } catch (const std::exception& error) {
       result.error = error.what();
+    } catch (...) {
+      result.error = "the computation failed";
     }
     running_ = false;
     done(std::move(result));

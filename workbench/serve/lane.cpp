@@ -1,6 +1,7 @@
 #include "workbench/serve/lane.h"
 
 #include <algorithm>
+#include <iostream>
 
 namespace workbench::serve {
 
@@ -57,7 +58,13 @@ void Lane::run() {
       work = std::move(waiting_.front().work);
       waiting_.pop_front();
     }
-    work();
+    try {
+      work();
+    } catch (const std::exception& error) {
+      std::cerr << "spoolwatch serve: a task has failed: " << error.what() << '\n';
+    } catch (...) {
+      std::cerr << "spoolwatch serve: a task has failed\n";
+    }
   }
 }
 

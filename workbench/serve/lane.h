@@ -1,4 +1,5 @@
-// A thread that does one thing after the other, so that the network's thread computes nothing.
+// A thread that does one thing after the other, so that the network's thread computes nothing. An
+// exception ends the one thing alone and is logged.
 #pragma once
 
 #include <condition_variable>

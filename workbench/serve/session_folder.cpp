@@ -43,7 +43,36 @@ std::string kind_of(const fs::path& file) {
   return "other";
 }
 
+/// The first `bytes` bytes of UTF-8 text, whole characters only.
+std::string cut(const std::string& text, std::size_t bytes) {
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const std::size_t next =
+        std::max<std::size_t>(1, sequence(std::string_view(text).substr(size)));
+    if (size + next > bytes) break;
+    size += next;
+  }
+  return text.substr(0, size);
+}
+
+/// "rig" of "rig-fitted", "rig-fitted-2" and "rig-diagnosed".
+std::string without_step(const std::string& stem) {
+  for (const std::string_view step : {"-fitted", "-diagnosed"}) {
+    const std::size_t at = stem.rfind(step);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string rest = stem.substr(at + step.size());
+    const bool number = rest.size() > 1 && rest.front() == '-' &&
+                        rest.find_first_not_of("0123456789", 1) == std::string::npos;
+    if (rest.empty() || number) return stem.substr(0, at);
+  }
+  return stem;
+}
+
 }  // namespace
+
+std::string derived_name(const std::string& model, const std::string& suffix) {
+  return without_step(fs::path(model).stem().string()) + suffix + ".toml";
+}
 
 bool is_plain_name(std::string_view name) {
   if (name.empty() || name.size() > kLongestName || name.front() == '.' || name.front() == '-') {
@@ -105,9 +134,10 @@ std::string SessionFolder::existing(const std::string& name) const {
 std::string SessionFolder::fresh_name(const std::string& name) const {
   const fs::path wanted(name);
   for (int number = 1;; ++number) {
-    std::string one = wanted.stem().string();
-    if (number > 1) one += "-" + std::to_string(number);
-    one += wanted.extension().string();
+    const std::string end =
+        (number > 1 ? "-" + std::to_string(number) : "") + wanted.extension().string();
+    const std::size_t room = kLongestName - std::min(kLongestName, end.size());
+    const std::string one = cut(wanted.stem().string(), room) + end;
     std::error_code ignored;
     if (fs::symlink_status(path_of(one), ignored).type() == fs::file_type::not_found) return one;
   }

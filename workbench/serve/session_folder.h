@@ -29,7 +29,7 @@ class SessionFolder {
   [[nodiscard]] std::string existing(const std::string& name) const;
   /// The path of a file to be written. Throws config::schema::UsageError for an unusable name.
   [[nodiscard]] std::string path_of(const std::string& name) const;
-  /// "stem.toml", or "stem-2.toml" where that exists.
+  /// "stem.toml", or "stem-2.toml" where that exists; a stem too long for a name is cut.
   [[nodiscard]] std::string fresh_name(const std::string& name) const;
   /// A hidden file that an upload is written to.
   [[nodiscard]] std::filesystem::path upload_file() const;
@@ -44,6 +44,10 @@ class SessionFolder {
  private:
   std::filesystem::path folder_;
 };
+
+/// Name for a model made from `model`: "rig.toml" and "-fitted" make "rig-fitted.toml", and so does
+/// "rig-fitted-2.toml": what was done by itself is in the lineage, not in longer and longer names.
+[[nodiscard]] std::string derived_name(const std::string& model, const std::string& suffix);
 
 /// No folder, no control character, no leading dot or minus, at most 100 bytes of UTF-8.
 [[nodiscard]] bool is_plain_name(std::string_view name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iostream>
 
 #include "config/schema/error.h"
 #include "workbench/control/order.h"
@@ -206,12 +207,13 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
 }
 
 void Site::take_upload(const HttpRequest& request, const HttpReply& reply) {
-  const std::filesystem::path file = request.upload;
   const std::string name = upload_name(request.head);
   on_study(
       reply,
-      [this, file, name] {
-        const std::string kept = folder_.keep_upload(file, name);
+      [this, upload = request.upload, name]() mutable {
+        // Without a name by the end of this block the file is removed, before the answer.
+        const auto file = std::move(upload);
+        const std::string kept = folder_.keep_upload(file->path(), name);
         try {
           const std::string path = folder_.existing(kept);
           const bool is_model = std::filesystem::path(kept).extension() == ".toml";
@@ -318,10 +320,15 @@ Site::Json Site::whole_state() {
 }
 
 void Site::publish_state() {
-  Json state = whole_state();
-  state.erase("change");
-  publish(kWorkbenchTopic, "state", state);
-  watch_model();
+  try {
+    Json state = whole_state();
+    state.erase("change");
+    publish(kWorkbenchTopic, "state", state);
+    watch_model();
+  } catch (const std::exception& error) {
+    // Whatever was done is done: a page learns of it with the next event.
+    std::cerr << "spoolwatch serve: the state is not shown: " << error.what() << '\n';
+  }
 }
 
 void Site::watch_model() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
@@ -52,25 +53,45 @@ double heldout_of(const validation::Comparison& comparison) {
   return greybox::rms(error_m, data.validation_mask);
 }
 
+/// A file made on the way to a change: removed where the change fails.
+class MadeFile {
+ public:
+  explicit MadeFile(std::string path) : path_(std::move(path)) {}
+  ~MadeFile() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove(path_, ignored);
+  }
+  MadeFile(const MadeFile&) = delete;
+  MadeFile& operator=(const MadeFile&) = delete;
+
+  void keep() { path_.clear(); }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace
 
 Study::Study(const SessionFolder& folder) : folder_(folder) {
   std::ifstream in(folder_.path_of(kSession));
   const ordered_json session = ordered_json::parse(in, nullptr, false);
   if (!session.is_object()) return;
-  lineage_ = lineage_of(session);
   const auto text = [&](const char* key) {
     const auto found = session.find(key);
     return found != session.end() && found->is_string() ? found->get<std::string>() : "";
   };
-  std::vector<std::string> ignored;
+  open_.lineage = lineage_of(session);
+  Open next = open_;
+  next.record = text("record");
+  next.model = text("model");
+  next.trial = text("trial");
   if (const auto spans = session.find("ignored"); spans != session.end() && spans->is_array()) {
     for (const ordered_json& span : *spans) {
-      if (span.is_string()) ignored.push_back(span.get<std::string>());
+      if (span.is_string()) next.ignored.push_back(span.get<std::string>());
     }
   }
   try {
-    show(text("record"), text("model"), text("trial"), ignored);
+    show(std::move(next));
   } catch (const config::schema::Error&) {
     // Files were renamed or changed meanwhile: the session begins without them.
   }
@@ -79,8 +100,8 @@ Study::Study(const SessionFolder& folder) : folder_(folder) {
 compare::CompareRequest Study::request_of(const std::string& model) const {
   compare::CompareRequest request;
   request.model = folder_.existing(model);
-  request.record = folder_.existing(record_);
-  request.ignored = ignored_;
+  request.record = folder_.existing(open_.record);
+  request.ignored = open_.ignored;
   return request;
 }
 
@@ -99,51 +120,63 @@ std::optional<Study::Shown> Study::shown_of(const std::string& record, const std
   return shown;
 }
 
-void Study::note_errors(const std::string& model, const std::optional<Shown>& shown) {
+void Study::note_errors(Open& next, const std::string& model, const std::optional<Shown>& shown) {
   if (model.empty()) return;
-  ModelNode& node = lineage_.add(model, "", "as it is");
+  ModelNode& node = next.lineage.add(model, "", "as it is");
   if (!shown) return;
-  node.record = record_;
+  node.record = next.record;
   node.rotary = shown->prepared.model.rotary();
   node.heldout_m = shown->heldout_m;
   node.rms_m = shown->comparison.rms_m;
   node.noise_floor_m = shown->comparison.noise_floor_m;
 }
 
-void Study::show(std::string record, std::string model, std::string trial,
-                 std::vector<std::string> ignored) {
-  using config::units::Motion;
-  const auto motion_in = [&](const std::string& file) {
-    return file.empty() ? Motion::linear
-                        : present::motion_of(plant_sim::load_model(folder_.existing(file)));
-  };
-  const Motion live = motion_in(model);
-  const Motion motion = trial.empty() ? live : motion_in(trial);
-  if (!record.empty()) (void)folder_.existing(record);
-  std::optional<Shown> accepted = shown_of(record, model, ignored);
-  std::optional<Shown> tried = shown_of(record, trial, ignored);
-  record_ = std::move(record);
-  model_ = std::move(model);
-  trial_ = std::move(trial);
-  ignored_ = std::move(ignored);
-  motion_ = motion;
-  live_rotary_ = live == Motion::rotary;
+void Study::show(Open next) {
+  next.shown.reset();
+  next.live_rotary = false;
+  if (!next.model.empty()) {
+    next.shown = plant_sim::load_model(folder_.existing(next.model));
+    next.live_rotary = next.shown->rotary();
+  }
+  if (!next.trial.empty()) next.shown = plant_sim::load_model(folder_.existing(next.trial));
+  if (!next.record.empty()) (void)folder_.existing(next.record);
+  std::optional<Shown> accepted = shown_of(next.record, next.model, next.ignored);
+  std::optional<Shown> tried = shown_of(next.record, next.trial, next.ignored);
+  note_errors(next, next.model, accepted);
+  note_errors(next, next.trial, tried);
+  save(next);
+  open_ = std::move(next);
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
-  note_errors(model_, accepted_);
-  note_errors(trial_, tried_);
-  save();
+}
+
+void Study::show_model(const std::string& model) {
+  Open next = open_;
+  next.model = model;
+  next.trial.clear();
+  show(std::move(next));
+}
+
+config::units::Motion Study::motion() const {
+  return open_.shown ? present::motion_of(*open_.shown) : config::units::Motion::linear;
+}
+
+const std::string& Study::shown_model() const {
+  return open_.trial.empty() ? open_.model : open_.trial;
 }
 
 void Study::open_record(const std::string& record) {
   // Read even where no model is open, so that a mistake is told at once.
   (void)greybox::dataset_of(config::record::read_record(folder_.existing(record)));
-  show(record, model_, trial_, {});
+  Open next = open_;
+  next.record = record;
+  next.ignored.clear();
+  show(std::move(next));
 }
 
 void Study::open_model(const std::string& model) {
   (void)folder_.existing(model);
-  show(record_, model, "", ignored_);
+  show_model(model);
 }
 
 void Study::open_shipped(const std::string& name) {
@@ -151,7 +184,9 @@ void Study::open_shipped(const std::string& name) {
     if (shipped.name != name) continue;
     const std::string file = folder_.fresh_name(name);
     config::record::write_whole(folder_.path_of(file), shipped.text);
-    return open_model(file);
+    MadeFile made(folder_.path_of(file));
+    open_model(file);
+    return made.keep();
   }
   throw UsageError("no model of that name comes with the program");
 }
@@ -162,12 +197,14 @@ void Study::ignore(const std::vector<std::string>& spans) {
   for (const std::string& span : spans) {
     if (span.find('@') != std::string::npos) throw UsageError("a span is from:to, in s");
   }
-  show(record_, model_, trial_, spans);
+  Open next = open_;
+  next.ignored = spans;
+  show(std::move(next));
 }
 
 void Study::add_effect(const std::string& effect) {
-  if (model_.empty()) throw UsageError("no model is open");
-  const std::string from = folder_.existing(model_);
+  if (open_.model.empty()) throw UsageError("no model is open");
+  const std::string from = folder_.existing(open_.model);
   std::vector<std::string> values;
   const add::AddedEffect neutral = add::add_effect(from, effect, {});
   for (const plant_sim::ParameterInfo& info : neutral.effect.parameters) {
@@ -175,31 +212,36 @@ void Study::add_effect(const std::string& effect) {
     values.push_back(std::string(info.name) + "=" + add::number_text(info.typical));
   }
   const plant_sim::ModelFile with = add::add_effect(from, effect, values).model;
-  const std::string file = folder_.fresh_name(stem(model_) + "+" + effect + ".toml");
-  std::vector<std::string> words{"spoolwatch", "add", model_, effect};
+  const std::string file = folder_.fresh_name(derived_name(open_.model, "+" + effect));
+  std::vector<std::string> words{"spoolwatch", "add", open_.model, effect};
   words.insert(words.end(), values.begin(), values.end());
   words.insert(words.end(), {"-o", file});
   config::record::write_whole(folder_.path_of(file), plant_sim::print_model(with));
-  take_trial(file, model_, "+ " + effect + ", of typical size", command_of(words));
+  MadeFile made(folder_.path_of(file));
+  take_trial(file, open_.model, "+ " + effect + ", of typical size", command_of(words));
+  made.keep();
 }
 
 void Study::take_trial(const std::string& model, const std::string& parent, const std::string& what,
                        const std::string& command) {
-  lineage_.add(model, parent, what);
-  lineage_.remember(command);
-  show(record_, model_.empty() ? parent : model_, model, ignored_);
+  Open next = open_;
+  next.lineage.add(model, parent, what);
+  next.lineage.remember(command);
+  if (next.model.empty()) next.model = parent;
+  next.trial = model;
+  show(std::move(next));
 }
 
 void Study::accept() {
-  if (trial_.empty()) throw UsageError("there is no trial to accept");
-  show(record_, trial_, "", ignored_);
+  if (open_.trial.empty()) throw UsageError("there is no trial to accept");
+  show_model(open_.trial);
 }
 
 void Study::undo() {
-  if (!trial_.empty()) return show(record_, model_, "", ignored_);
-  const ModelNode* const node = lineage_.find(model_);
+  if (!open_.trial.empty()) return show_model(open_.model);
+  const ModelNode* const node = open_.lineage.find(open_.model);
   if (node == nullptr || node->parent.empty()) throw UsageError("there is nothing to undo");
-  show(record_, node->parent, "", ignored_);
+  show_model(node->parent);
 }
 
 const Study::Shown& Study::front() const {
@@ -209,17 +251,20 @@ const Study::Shown& Study::front() const {
 }
 
 std::string Study::write_report() {
-  const std::string model = tried_ ? trial_ : model_;
   const Shown& shown = front();
-  const present::PrintedAxis axis(motion_);
-  std::string file = folder_.fresh_name(stem(model) + ".html");
-  std::vector<std::string> words{"spoolwatch", "compare", model, record_};
-  add_ignored(words, ignored_);
+  const present::PrintedAxis axis(motion());
+  std::string file = folder_.fresh_name(stem(shown_model()) + ".html");
+  std::vector<std::string> words{"spoolwatch", "compare", shown_model(), open_.record};
+  add_ignored(words, open_.ignored);
   words.insert(words.end(), {"--report", file});
   const std::string command = command_of(words);
+  Open next = open_;
+  next.lineage.remember(command);
+  MadeFile made(folder_.path_of(file));
   present::write_report(compare::make_report(shown.comparison, command), folder_.path_of(file));
-  lineage_.remember(command);
-  save();
+  save(next);
+  open_ = std::move(next);
+  made.keep();
   return file;
 }
 
@@ -244,19 +289,19 @@ std::vector<std::string> Study::assignments_of(const ParameterValues& values) co
 
 fit::FitRequest Study::fit_request(const ParameterValues& values) const {
   (void)front();
-  const std::string model = tried_ ? trial_ : model_;
+  const std::string& model = shown_model();
   fit::FitRequest request;
   request.model = folder_.existing(model);
-  request.records = {folder_.existing(record_)};
+  request.records = {folder_.existing(open_.record)};
   request.fit = kSplit;
-  request.ignored = ignored_;
+  request.ignored = open_.ignored;
   request.profiles = {"none"};
   request.assignments = assignments_of(values);
-  const std::string file = folder_.fresh_name(stem(model) + "-fitted.toml");
+  const std::string file = folder_.fresh_name(derived_name(model, "-fitted"));
   request.output = folder_.path_of(file);
-  std::vector<std::string> words{"spoolwatch", "fit",       model,  record_, "--fit",
-                                 kSplit,       "--profile", "none", "-o",    file};
-  add_ignored(words, ignored_);
+  std::vector<std::string> words{"spoolwatch", "fit",       model,  open_.record, "--fit",
+                                 kSplit,       "--profile", "none", "-o",         file};
+  add_ignored(words, open_.ignored);
   for (const std::string& assignment : request.assignments) {
     words.insert(words.end(), {"--set", assignment});
   }
@@ -266,49 +311,56 @@ fit::FitRequest Study::fit_request(const ParameterValues& values) const {
 
 diagnose::DiagnosisRequest Study::diagnosis_request(const std::vector<std::string>& only) const {
   (void)front();
-  const std::string model = tried_ ? trial_ : model_;
+  const std::string& model = shown_model();
   diagnose::DiagnosisRequest request;
   request.model = folder_.existing(model);
-  request.records = {folder_.existing(record_)};
-  request.ignored = ignored_;
+  request.records = {folder_.existing(open_.record)};
+  request.ignored = open_.ignored;
   request.only = only;
   std::string suffix = only.empty() ? "-diagnosed" : "";
   for (const std::string& effect : only) suffix.append("+").append(effect);
-  const std::string file = folder_.fresh_name(stem(model) + suffix + ".toml");
+  const std::string file = folder_.fresh_name(derived_name(model, suffix));
   request.output = folder_.path_of(file);
-  std::vector<std::string> words{"spoolwatch", "diagnose", model, record_};
+  std::vector<std::string> words{"spoolwatch", "diagnose", model, open_.record};
   for (const std::string& effect : only) words.insert(words.end(), {"--only", effect});
-  add_ignored(words, ignored_);
+  add_ignored(words, open_.ignored);
   words.insert(words.end(), {"-o", file});
   request.command = command_of(words);
   return request;
 }
 
-void Study::save() const {
-  ordered_json session{
-      {"record", record_}, {"model", model_}, {"trial", trial_}, {"ignored", ignored_}};
-  session.update(to_json(lineage_));
+void Study::save(const Open& open) const {
+  ordered_json session{{"record", open.record},
+                       {"model", open.model},
+                       {"trial", open.trial},
+                       {"ignored", open.ignored}};
+  session.update(to_json(open.lineage));
   config::record::write_whole(
       folder_.path_of(kSession),
       session.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
-  config::record::write_whole(folder_.path_of(kScript), script_of(lineage_));
+  try {
+    config::record::write_whole(folder_.path_of(kScript), script_of(open.lineage));
+  } catch (const config::schema::Error& error) {
+    // The session is saved, and the next change writes the whole script.
+    std::cerr << "spoolwatch serve: " << error.what() << '\n';
+  }
 }
 
 std::string Study::curves(const View& view) const {
-  const present::PrintedAxis axis(motion_);
+  const present::PrintedAxis axis(motion());
   return columns(nullptr, view);
 }
 
 std::string Study::preview(const ParameterValues& values, const View& view) const {
   const Shown& shown = front();
-  const present::PrintedAxis axis(motion_);
-  compare::CompareRequest request = request_of(tried_ ? trial_ : model_);
+  const present::PrintedAxis axis(motion());
+  compare::CompareRequest request = request_of(shown_model());
   request.assignments = assignments_of(values);
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   const validation::ModelErrors errors = validation::errors_of(model, shown.prepared.record);
   std::string json = columns(&errors, view);
-  std::vector<std::string> words{"spoolwatch", "compare", tried_ ? trial_ : model_, record_};
-  add_ignored(words, ignored_);
+  std::vector<std::string> words{"spoolwatch", "compare", shown_model(), open_.record};
+  add_ignored(words, open_.ignored);
   for (const std::string& assignment : request.assignments) {
     words.insert(words.end(), {"--set", assignment});
   }

@@ -38,7 +38,8 @@ class Study {
   /// Continues the session of the folder, where there is one.
   explicit Study(const SessionFolder& folder);
 
-  // Each throws config::schema::Error with nothing changed.
+  // Each throws config::schema::Error, or another std::exception for want of memory; the session
+  // and what is open are then as before, and files that it made are removed.
 
   void open_record(const std::string& record);
   void open_model(const std::string& model);
@@ -58,12 +59,13 @@ class Study {
   [[nodiscard]] fit::FitRequest fit_request(const ParameterValues& values) const;
   [[nodiscard]] diagnose::DiagnosisRequest diagnosis_request(
       const std::vector<std::string>& only) const;
-  /// A model that a command has made from `parent` becomes the trial.
+  /// A model that a command has made from `parent` becomes the trial. Throws as the above; the
+  /// model's file stays.
   void take_trial(const std::string& model, const std::string& parent, const std::string& what,
                   const std::string& command);
 
   /// The model that is open, for the live page; empty: none.
-  [[nodiscard]] const std::string& live_model() const { return model_; }
+  [[nodiscard]] const std::string& live_model() const { return open_.model; }
 
   /// Everything that a page shows besides the curves.
   [[nodiscard]] nlohmann::ordered_json state();
@@ -73,6 +75,14 @@ class Study {
   [[nodiscard]] std::string preview(const ParameterValues& values, const View& view) const;
 
  private:
+  /// The session, as it is saved, and what follows from its files alone.
+  struct Open {
+    std::string record, model, trial;
+    std::vector<std::string> ignored;
+    Lineage lineage;
+    std::optional<plant_sim::ModelFile> shown;  ///< the trial, or else the model
+    bool live_rotary = false;                   ///< the axis of `model` turns
+  };
   struct Shown {
     compare::PreparedComparison prepared;
     validation::Comparison comparison;
@@ -82,22 +92,23 @@ class Study {
   [[nodiscard]] std::vector<std::string> assignments_of(const ParameterValues& values) const;
   [[nodiscard]] std::optional<Shown> shown_of(const std::string& record, const std::string& model,
                                               const std::vector<std::string>& ignored) const;
-  /// Takes what was compared without an error.
-  void show(std::string record, std::string model, std::string trial,
-            std::vector<std::string> ignored);
-  void note_errors(const std::string& model, const std::optional<Shown>& shown);
+  /// Compares and saves `next`, then takes it.
+  void show(Open next);
+  /// As accepted: `model` without a trial.
+  void show_model(const std::string& model);
+  static void note_errors(Open& next, const std::string& model, const std::optional<Shown>& shown);
+  /// Motion of the axis that is shown.
+  [[nodiscard]] config::units::Motion motion() const;
+  /// The trial, or else the model.
+  [[nodiscard]] const std::string& shown_model() const;
   [[nodiscard]] const Shown& front() const;
   /// `changed`: the curves of a model with other values, alone; null: everything.
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
-  void save() const;
+  void save(const Open& open) const;
 
   const SessionFolder& folder_;
-  std::string record_, model_, trial_;
-  std::vector<std::string> ignored_;
-  bool live_rotary_ = false;  ///< the axis of live_model() turns
-  config::units::Motion motion_ = config::units::Motion::linear;  ///< of the model that is shown
+  Open open_;
   std::optional<Shown> accepted_, tried_;
-  Lineage lineage_;
 };
 
 }  // namespace workbench::serve

@@ -287,10 +287,10 @@ std::string Study::columns(const validation::ModelErrors* changed, const View& v
 }
 
 ordered_json Study::state() {
-  const present::PrintedAxis axis(motion_);
-  ordered_json out{{"record", record_}, {"model", model_}, {"trial", trial_}};
-  out["rotary"] = live_rotary_;
-  out["ignored"] = ignored_;
+  const present::PrintedAxis axis(motion());
+  ordered_json out{{"record", open_.record}, {"model", open_.model}, {"trial", open_.trial}};
+  out["rotary"] = open_.live_rotary;
+  out["ignored"] = open_.ignored;
   out["files"] = ordered_json::array();
   for (const FolderFile& file : folder_.files()) {
     out["files"].push_back({{"name", file.name}, {"kind", file.kind}, {"bytes", file.bytes}});
@@ -301,23 +301,20 @@ ordered_json Study::state() {
   out["shown"] = nullptr;
   if (shown) {
     out["shown"] = json_of(shown->comparison, shown->heldout_m);
-    std::vector<std::string> words{"spoolwatch", "compare", tried_ ? trial_ : model_, record_};
-    for (const std::string& span : ignored_) words.insert(words.end(), {"--ignore", span});
+    std::vector<std::string> words{"spoolwatch", "compare", shown_model(), open_.record};
+    for (const std::string& span : open_.ignored) words.insert(words.end(), {"--ignore", span});
     out["shown"]["command"] = present::shell_command(words);
   }
   out["parameters"] = ordered_json::array();
   out["effects"] = ordered_json::array();
-  const std::string& model = trial_.empty() ? model_ : trial_;
-  if (!model.empty()) {
-    const plant_sim::ModelFile file =
-        shown ? shown->prepared.model : plant_sim::load_model(folder_.existing(model));
-    out["parameters"] = parameters_of(file);
-    out["effects"] = listed_effects(file);
+  if (open_.shown) {
+    out["parameters"] = parameters_of(*open_.shown);
+    out["effects"] = listed_effects(*open_.shown);
   }
-  const ordered_json lineage = to_json(lineage_);
+  const ordered_json lineage = to_json(open_.lineage);
   out["lineage"] = lineage["nodes"];
   for (ordered_json& node : out["lineage"]) {
-    const ModelNode* const known = lineage_.find(node["model"].get<std::string>());
+    const ModelNode* const known = open_.lineage.find(node["model"].get<std::string>());
     const present::PrintedAxis own(known->rotary ? config::units::Motion::rotary
                                                  : config::units::Motion::linear);
     node["heldout"] = typeset(config::units::length_words(known->heldout_m));

@@ -1,6 +1,8 @@
 // Other sites, other users, other names and other paths: each is refused, and nothing changes.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/workbench/serve/loopback.h"
 #include "workbench/serve/gate.h"
 #include "workbench/serve/session_folder.h"
@@ -23,6 +25,14 @@ const std::string kRecord = [] {
   }
   return text;
 }();
+
+/// Files in the folder that no name leads to.
+std::size_t hidden_files(const std::filesystem::path& folder) {
+  const std::filesystem::directory_iterator files(folder);
+  return static_cast<std::size_t>(std::count_if(begin(files), end(files), [](const auto& entry) {
+    return entry.path().filename().string().front() == '.';
+  }));
+}
 
 class Attack : public testing::Test {
  protected:
@@ -222,6 +232,27 @@ TEST(SessionFolder, TakesPlainNamesAlone) {
         std::string(101, 'a'), std::string("a\\b")}) {
     EXPECT_FALSE(is_plain_name(name)) << name;
   }
+}
+
+TEST(Upload, LeavesNothingWhereItIsRefused) {
+  ServedFolder page({}, "served_upload");
+  page.log_in();
+  const auto upload = [&](const std::string& name, const std::string& text) {
+    return page
+        .ask("POST", "/api/upload?name=" + name, text,
+             {{"Content-Type", "application/octet-stream"}})
+        .status;
+  };
+  EXPECT_EQ(upload("bad.csv", "t_s,u_V,y_m\n0,1,x\n"), 422);
+  EXPECT_EQ(upload("bad.toml", "nothing = 1\n"), 422);
+  // A second file of this name has no room for a number.
+  const std::string longest = "r." + std::string(98, 'x');
+  page.put(longest, "");
+  EXPECT_EQ(upload(longest, kRecord), 422);
+  EXPECT_EQ(hidden_files(page.session), 0U);
+  EXPECT_EQ(upload("good.csv", kRecord), 200);
+  EXPECT_EQ(hidden_files(page.session), 0U);
+  EXPECT_TRUE(std::filesystem::exists(page.session / "good.csv"));
 }
 
 }  // namespace

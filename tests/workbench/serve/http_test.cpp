@@ -214,6 +214,53 @@ TEST(HttpFiles, AClientThatReadsSlowlyGetsAllOfIt) {
   std::filesystem::remove(plain.file);
 }
 
+/// Takes a body as a file and answers, leaving the file where it is.
+class Careless final : public HttpHandler {
+ public:
+  explicit Careless(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  BodyPlan admit(const HttpHead&) override {
+    return {.kind = BodyPlan::Kind::file, .file = folder_ / "upload"};
+  }
+  void handle(HttpRequest request, HttpReply reply) override {
+    taken = std::filesystem::file_size(request.upload->path());
+    reply({.status = 503, .body = "later"});
+  }
+  void on_streams(unsigned) override {}
+  std::atomic<std::uintmax_t> taken{0};
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST(HttpFiles, AnUploadThatNobodyKeepsIsRemoved) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("spoolwatch_upload_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  Careless careless(folder);
+  const ListenSocket listening = listen_on_port(0);
+  HttpServer server(listening.file, careless);
+  std::thread thread([&] { server.run(); });
+  const std::string head = "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\n";
+  {
+    const Client client(listening.port);
+    ASSERT_TRUE(client.send(head + "bytes"));
+    EXPECT_EQ(answer_of(client.receive(std::chrono::seconds(5), "later")).status, 503);
+  }
+  EXPECT_EQ(careless.taken, 5U);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  {
+    const Client client(listening.port);
+    ASSERT_TRUE(client.send(head + "by"));
+    while (std::filesystem::is_empty(folder)) std::this_thread::yield();
+  }
+  const auto until = Clock::now() + std::chrono::seconds(5);
+  while (!std::filesystem::is_empty(folder) && Clock::now() < until) std::this_thread::yield();
+  EXPECT_TRUE(std::filesystem::is_empty(folder)) << "the client has gone in the middle";
+  server.stop();
+  thread.join();
+  std::filesystem::remove_all(folder);
+}
+
 TEST(HttpStreams, AClientThatDoesNotReadLosesTheOldestAndGrowsNothing) {
   Plain plain;
   HttpLimits limits;
