@@ -83,8 +83,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   ~HttpConnection() {
     network_->connections.erase(this);
     if (topics_ != 0) {
-      network_->streams.erase(this);
-      network_->tell_streams();
+      network_->streams.erase(stream_id_);
+      network_->handler.on_stream_closed(stream_id_, topics_);
     }
   }
   HttpConnection(const HttpConnection&) = delete;
@@ -304,7 +304,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
       return send_last(plain(503, "too many event streams are open\n"));
     }
     topics_ = response.topics;
-    network_->streams.insert(this);
+    stream_id_ = ++network_->newest_stream;
+    network_->streams.emplace(stream_id_, this);
     http::response<http::empty_body> head{http::status::ok, 11};
     head.set(http::field::content_type, "text/event-stream");
     secure(head);
@@ -312,7 +313,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     std::ostringstream text;
     text << head.base();
     add_event(std::make_shared<const std::string>(text.str() + response.body));
-    network_->tell_streams();
+    network_->handler.on_stream_open(stream_id_, topics_);
     watch_client();
   }
 
@@ -357,7 +358,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::shared_ptr<HttpConnection> waiting_;
   bool keep_alive_ = true;
   int requests_ = 0;
-  unsigned topics_ = 0;
+  unsigned topics_ = 0;  ///< not 0: an event stream
+  StreamId stream_id_ = 0;
   std::deque<std::shared_ptr<const std::string>> events_;
   std::size_t queued_ = 0;
   std::size_t dropped_ = 0;

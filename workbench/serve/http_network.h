@@ -9,9 +9,11 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "workbench/serve/http_server.h"
 
@@ -32,7 +34,7 @@ class HttpNetwork : public std::enable_shared_from_this<HttpNetwork> {
   void take_waiting();
   void beat();
   void publish(unsigned topic, const std::shared_ptr<const std::string>& event);
-  void tell_streams();
+  void publish_to(const std::vector<StreamId>& to, const std::shared_ptr<const std::string>& event);
 
   asio::io_context context{1};
   asio::posix::stream_descriptor listening{context};
@@ -41,7 +43,8 @@ class HttpNetwork : public std::enable_shared_from_this<HttpNetwork> {
   HttpHandler& handler;
   const HttpLimits limits;
   std::set<HttpConnection*> connections;
-  std::set<HttpConnection*> streams;
+  std::map<StreamId, HttpConnection*> streams;
+  StreamId newest_stream = 0;
 };
 
 }  // namespace workbench::serve

@@ -69,17 +69,20 @@ void HttpNetwork::beat() {
 
 void HttpNetwork::publish(unsigned topic, const std::shared_ptr<const std::string>& event) {
   std::vector<std::shared_ptr<HttpConnection>> all;
-  for (HttpConnection* stream : streams) {
+  for (const auto& [id, stream] : streams) {
     if ((stream->topics() & topic) == 0) continue;
     if (auto one = stream->weak_from_this().lock()) all.push_back(std::move(one));
   }
   for (const auto& one : all) one->add_event(event);
 }
 
-void HttpNetwork::tell_streams() {
-  unsigned topics = 0;
-  for (const HttpConnection* stream : streams) topics |= stream->topics();
-  handler.on_streams(topics);
+void HttpNetwork::publish_to(const std::vector<StreamId>& to,
+                             const std::shared_ptr<const std::string>& event) {
+  for (const StreamId id : to) {
+    const auto stream = streams.find(id);
+    if (stream == streams.end()) continue;
+    if (const auto one = stream->second->weak_from_this().lock()) one->add_event(event);
+  }
 }
 
 HttpServer::HttpServer(int listening, HttpHandler& handler, const HttpLimits& limits)
@@ -122,6 +125,14 @@ void HttpServer::publish(unsigned topic, std::string event) {
   auto shared = std::make_shared<const std::string>(std::move(event));
   auto network = network_;
   asio::post(network_->context, [network, topic, shared] { network->publish(topic, shared); });
+}
+
+void HttpServer::publish_to(std::vector<StreamId> streams, std::string event) {
+  auto shared = std::make_shared<const std::string>(std::move(event));
+  auto network = network_;
+  asio::post(network_->context, [network, streams = std::move(streams), shared] {
+    network->publish_to(streams, shared);
+  });
 }
 
 }  // namespace workbench::serve

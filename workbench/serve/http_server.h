@@ -82,6 +82,9 @@ struct BodyPlan {
   std::filesystem::path file{};  ///< Kind::file; written there
 };
 
+/// An event stream that is or was open; no number comes twice.
+using StreamId = std::uint64_t;
+
 /// Answers one request, once, from any thread.
 using HttpReply = std::function<void(HttpResponse)>;
 
@@ -92,8 +95,9 @@ class HttpHandler {
   /// Decides by the head alone, before a byte of the body is taken.
   virtual BodyPlan admit(const HttpHead& head) = 0;
   virtual void handle(HttpRequest request, HttpReply reply) = 0;
-  /// Number of open event streams under each of the topics has changed.
-  virtual void on_streams(unsigned topics_in_use) = 0;
+  /// An event stream that follows `topics` is open from now on.
+  virtual void on_stream_open(StreamId stream, unsigned topics) = 0;
+  virtual void on_stream_closed(StreamId stream, unsigned topics) = 0;
 };
 
 class HttpNetwork;
@@ -113,6 +117,8 @@ class HttpServer {
   /// May be called from any thread. Sends an event ("event: NAME\ndata: ...\n\n") to all streams
   /// that follow the topic.
   void publish(unsigned topic, std::string event);
+  /// The same to those of these streams that are open.
+  void publish_to(std::vector<StreamId> streams, std::string event);
 
  private:
   std::shared_ptr<HttpNetwork> network_;

@@ -1,9 +1,14 @@
 #include "workbench/serve/live_channel.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <compare>
 #include <deque>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "config/schema/error.h"
@@ -17,6 +22,7 @@
 #include "workbench/live/listen_lines.h"
 #include "workbench/live/online_residual.h"
 #include "workbench/present/json.h"
+#include "workbench/present/script_json.h"
 
 namespace workbench::serve {
 namespace {
@@ -32,6 +38,7 @@ constexpr std::chrono::seconds kFigures{3};  ///< a comparison over the last hal
 constexpr std::chrono::seconds kRetry{1};
 constexpr double kHistory_s = 60.0;
 constexpr std::size_t kMostPoints = 60 * 1000;  ///< a kilohertz for the whole history
+constexpr std::uint64_t kMostBatch = 4000;      ///< points; some 200 kB of text
 constexpr std::int8_t kStaleQuality = 2;        ///< and 3, bad: no new reading
 constexpr std::size_t kMostSources = 50;
 
@@ -81,8 +88,8 @@ class LiveListener final : public live::FeedListener {
   }
   void on_new_run(std::int64_t, bool first) override {
     if (!first) notice_ = "the daemon was restarted";
+    first_ = end();
     points_.clear();
-    fresh_ = 0;
     estimates_.clear();
     alarms_.clear();
     if (!first) restarted_ = true;
@@ -107,23 +114,29 @@ class LiveListener final : public live::FeedListener {
     }
   }
 
-  /// The newest `count` points, column by column.
-  [[nodiscard]] ordered_json columns(std::size_t count) const {
-    ordered_json t = ordered_json::array(), reference = t, y = t, u = t, error = t;
-    for (std::size_t i = points_.size() - std::min(count, points_.size()); i < points_.size();
-         ++i) {
-      const Point& p = points_[i];
-      t.push_back(p.t_s);
-      reference.push_back(number_or_null(1e3 * p.reference_m));
-      y.push_back(number_or_null(1e3 * p.y_m));
-      u.push_back(number_or_null(p.u_V));
-      error.push_back(number_or_null(1e6 * p.error_m));
-    }
-    return {{"t", t}, {"reference", reference}, {"y", y}, {"u", u}, {"error", error}};
+  /// Points are numbered as they come; those from begin() on are kept.
+  [[nodiscard]] std::uint64_t begin() const { return first_; }
+  [[nodiscard]] std::uint64_t end() const { return first_ + points_.size(); }
+  [[nodiscard]] double newest_s() const { return points_.back().t_s; }
+
+  /// Points `from` to `to`, column by column, as members of a JSON object; times in s after "t0".
+  [[nodiscard]] std::string columns(std::uint64_t from, std::uint64_t to) const {
+    const auto first = points_.begin() + static_cast<std::ptrdiff_t>(from - first_);
+    const auto last = points_.begin() + static_cast<std::ptrdiff_t>(to - first_);
+    const auto column = [&](const char* name, auto value) {
+      std::vector<double> values;
+      values.reserve(static_cast<std::size_t>(last - first));
+      for (auto point = first; point != last; ++point) values.push_back(value(*point));
+      return ",\"" + std::string(name) + "\":" + present::json_numbers(values);
+    };
+    const double t0_s = first->t_s;
+    return fmt::format("\"t0\":{:.6f}", t0_s) +
+           column("t", [&](const Point& p) { return p.t_s - t0_s; }) +
+           column("reference", [](const Point& p) { return 1e3 * p.reference_m; }) +
+           column("y", [](const Point& p) { return 1e3 * p.y_m; }) +
+           column("u", [](const Point& p) { return p.u_V; }) +
+           column("error", [](const Point& p) { return 1e6 * p.error_m; });
   }
-  [[nodiscard]] ordered_json history() const { return columns(points_.size()); }
-  [[nodiscard]] std::size_t fresh() const { return fresh_; }
-  ordered_json take_fresh() { return columns(std::exchange(fresh_, 0)); }
   [[nodiscard]] bool take_restarted() { return std::exchange(restarted_, false); }
 
   void update_model_figures() {
@@ -150,14 +163,14 @@ class LiveListener final : public live::FeedListener {
  private:
   void append(const Point& point) {
     points_.push_back(point);
-    ++fresh_;
     while (points_.size() > kMostPoints || points_.front().t_s < point.t_s - kHistory_s) {
       points_.pop_front();
+      ++first_;
     }
   }
 
   std::deque<Point> points_;
-  std::size_t fresh_ = 0;
+  std::uint64_t first_ = 0;  ///< number of points_.front()
   std::optional<Clock::time_point> came_;
   int state_ = -1;
   bool silent_ = false;
@@ -170,6 +183,62 @@ class LiveListener final : public live::FeedListener {
   std::string model_note_;
   ordered_json model_figures_;
 };
+
+struct Batch {
+  std::vector<StreamId> pages;
+  const char* name;
+  std::string json;
+};
+
+/// How far each page is.
+class Pages {
+ public:
+  /// True where one has come.
+  bool set(const std::set<StreamId>& open) {
+    std::erase_if(pages_, [&](const auto& page) { return open.count(page.first) == 0; });
+    bool more = false;
+    for (const StreamId page : open) more = pages_.try_emplace(page).second || more;
+    return more;
+  }
+  /// Another run: all that came before is of no use.
+  void begin_again() {
+    for (auto& [id, place] : pages_) place = {};
+  }
+  /// The points that the pages lack, at most kMostBatch for each; pages at the same place share
+  /// one.
+  std::vector<Batch> next(const LiveListener& listener) {
+    std::map<Place, std::vector<StreamId>> places;
+    for (const auto& [id, place] : pages_) places[place].push_back(id);
+    std::vector<Batch> batches;
+    for (auto& [place, ids] : places) {
+      const std::uint64_t from = std::max(place.next, listener.begin());
+      const std::uint64_t to = std::min(listener.end(), from + kMostBatch);
+      if (from == to) continue;
+      const Place then{to, true, place.caught_up || to == listener.end()};
+      for (const StreamId id : ids) pages_[id] = then;
+      std::string json = "{";
+      if (!place.caught_up) {
+        json += fmt::format("\"begins\":{},\"newest\":{:.6f},", !place.begun, listener.newest_s());
+      }
+      json += listener.columns(from, to) + "}";
+      batches.push_back({std::move(ids), place.caught_up ? "samples" : "history", std::move(json)});
+    }
+    return batches;
+  }
+
+ private:
+  struct Place {
+    std::uint64_t next = 0;  ///< number of the first point that it lacks
+    bool begun = false;
+    bool caught_up = false;
+    auto operator<=>(const Place&) const = default;
+  };
+  std::map<StreamId, Place> pages_;
+};
+
+std::string text_of(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 }  // namespace
 
@@ -188,13 +257,17 @@ void LiveChannel::end() {
   if (thread_.joinable()) thread_.join();
 }
 
-void LiveChannel::want(bool wanted) {
+void LiveChannel::open(StreamId page) {
   {
     const std::lock_guard lock(mutex_);
-    wish_.wanted = wanted;
-    if (wanted) ++wish_.pages;
+    wish_.pages.insert(page);
   }
   wakes_.notify_one();
+}
+
+void LiveChannel::close(StreamId page) {
+  const std::lock_guard lock(mutex_);
+  wish_.pages.erase(page);
 }
 
 void LiveChannel::watch_model(std::string file) {
@@ -211,13 +284,15 @@ void LiveChannel::run() {
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      wakes_.wait(lock, [this] { return wish_.ends || wish_.wanted; });
+      wakes_.wait(lock, [this] { return wish_.ends || !wish_.pages.empty(); });
       if (wish_.ends) return;
     }
     try {
       listen();
     } catch (const std::exception& error) {
-      publish_("status", {{"age_s", nullptr}, {"notice", error.what()}});
+      const ordered_json status{{"age_s", nullptr}, {"notice", error.what()}};
+      const std::set<StreamId> pages = wish().pages;
+      publish_({pages.begin(), pages.end()}, "status", text_of(status));
       std::unique_lock lock(mutex_);
       wakes_.wait_for(lock, kRetry, [this] { return wish_.ends; });
     }
@@ -227,33 +302,28 @@ void LiveChannel::run() {
 void LiveChannel::listen() {
   LiveListener listener;
   live::ListenFeed feed(options_.url, options_.prefix, true, listener);
+  Pages pages;
   std::string model;
-  std::uint64_t pages = 0;
   Clock::time_point told{};
   Clock::time_point compared{};
   while (true) {
     const Wish now = wish();
-    if (now.ends || !now.wanted) return;
+    if (now.ends || now.pages.empty()) return;
     if (now.model != model) {
       model = now.model;
       listener.watch(model);
     }
     const bool more = feed.poll(kBatch);
-    if (now.pages != pages || listener.take_restarted()) {
-      pages = now.pages;
-      (void)listener.take_fresh();
-      publish_("history", listener.history());
-      told = {};
-    } else if (listener.fresh() > 0) {
-      publish_("samples", listener.take_fresh());
-    }
+    if (listener.take_restarted()) pages.begin_again();
+    if (pages.set(now.pages)) told = {};
+    for (const Batch& batch : pages.next(listener)) publish_(batch.pages, batch.name, batch.json);
     if (Clock::now() - told >= kStatus) {
       told = Clock::now();
       if (told - compared >= kFigures) {
         compared = told;
         listener.update_model_figures();
       }
-      publish_("status", listener.status());
+      publish_({now.pages.begin(), now.pages.end()}, "status", text_of(listener.status()));
       every_second_();
     }
     // After the end of a log its last picture stays.

@@ -1,13 +1,19 @@
 // A live channel passes the daemon's messages on to pages that watch: samples in batches,
 // estimates, health, and the error of a model beside them. It listens only while a page watches.
+//
+// A page that begins to watch catches up with the last minute in batches of bounded size, apart
+// from the other pages: "history" until it has all, then "samples".
 #pragma once
 
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <thread>
+#include <vector>
+
+#include "workbench/serve/http_server.h"
 
 namespace workbench::serve {
 
@@ -18,7 +24,9 @@ struct LiveOptions {
 
 class LiveChannel {
  public:
-  using Publish = std::function<void(const char* name, const nlohmann::ordered_json& data)>;
+  /// Sends the event `name` with JSON text to these pages.
+  using Publish = std::function<void(const std::vector<StreamId>& pages, const char* name,
+                                     const std::string& json)>;
 
   /// `publish` and `every_second` are called on this object's own thread.
   LiveChannel(LiveOptions options, Publish publish, std::function<void()> every_second);
@@ -29,15 +37,15 @@ class LiveChannel {
   /// Waits for its thread; nothing is published afterwards.
   void end();
   /// May be called from any thread when a page begins or ends to watch.
-  void want(bool wanted);
+  void open(StreamId page);
+  void close(StreamId page);
   /// May be called from any thread. Sets the model file that runs beside the samples; empty: none.
   void watch_model(std::string file);
 
  private:
   struct Wish {
-    bool wanted = false;
     bool ends = false;
-    std::uint64_t pages = 0;  ///< counts calls of want(true): each gets the history
+    std::set<StreamId> pages;
     std::string model;
   };
   void run();

@@ -51,7 +51,11 @@ Site::Site(const SiteOptions& options)
       study_(folder_),
       live_(
           options.live,
-          [this](const char* name, const Json& data) { publish(kLiveTopic, name, data); },
+          [this](const std::vector<StreamId>& pages, const char* name, const std::string& json) {
+            if (HttpServer* const server = server_) {
+              server->publish_to(pages, event_text(name, json));
+            }
+          },
           [this] { poll_control(); }) {
   watch_model();
 }
@@ -345,7 +349,13 @@ void Site::publish(unsigned topic, const char* name, const Json& data) {
   }
 }
 
-void Site::on_streams(unsigned topics_in_use) { live_.want((topics_in_use & kLiveTopic) != 0); }
+void Site::on_stream_open(StreamId stream, unsigned topics) {
+  if ((topics & kLiveTopic) != 0) live_.open(stream);
+}
+
+void Site::on_stream_closed(StreamId stream, unsigned topics) {
+  if ((topics & kLiveTopic) != 0) live_.close(stream);
+}
 
 void Site::poll_control() {
   if (control_lane_.waiting() > 0) return;

@@ -47,7 +47,8 @@ class Site final : public HttpHandler {
 
   BodyPlan admit(const HttpHead& head) override;
   void handle(HttpRequest request, HttpReply reply) override;
-  void on_streams(unsigned topics_in_use) override;
+  void on_stream_open(StreamId stream, unsigned topics) override;
+  void on_stream_closed(StreamId stream, unsigned topics) override;
 
   [[nodiscard]] const std::string& token() const { return gate_.token(); }
 

@@ -13,6 +13,7 @@ using std::chrono::milliseconds;
 using testing::AnyOf;
 using testing::Eq;
 using testing::HasSubstr;
+using testing::Not;
 using Clock = std::chrono::steady_clock;
 
 ServeOptions quick() {
@@ -181,7 +182,13 @@ class Plain final : public HttpHandler {
     if (request.head.path == "/file") response.file = file;
     reply(std::move(response));
   }
-  void on_streams(unsigned topics_in_use) override { topics = topics_in_use; }
+  void on_stream_open(StreamId stream, unsigned its_topics) override {
+    topics = its_topics;
+    newest = stream;
+  }
+  void on_stream_closed(StreamId, unsigned) override { ++closed; }
+  std::atomic<StreamId> newest{0};
+  std::atomic<int> closed{0};
   std::atomic<unsigned> topics{0};
   std::filesystem::path file;
 };
@@ -225,7 +232,8 @@ class Careless final : public HttpHandler {
     taken = std::filesystem::file_size(request.upload->path());
     reply({.status = 503, .body = "later"});
   }
-  void on_streams(unsigned) override {}
+  void on_stream_open(StreamId, unsigned) override {}
+  void on_stream_closed(StreamId, unsigned) override {}
   std::atomic<std::uintmax_t> taken{0};
 
  private:
@@ -288,6 +296,33 @@ TEST(HttpStreams, AClientThatDoesNotReadLosesTheOldestAndGrowsNothing) {
   EXPECT_THAT(text, HasSubstr("event: last"));
   EXPECT_THAT(text, Not(HasSubstr("other")));
   EXPECT_LT(text.size(), std::size_t{kEvents} * 10'000);
+  server.stop();
+  thread.join();
+}
+
+TEST(HttpStreams, AnEventForOneStreamReachesNoOther) {
+  Plain plain;
+  const ListenSocket listening = listen_on_port(0);
+  HttpServer server(listening.file, plain);
+  std::thread thread([&] { server.run(); });
+  const std::string request = "GET /events HTTP/1.1\r\nHost: x\r\n\r\n";
+  const Client first(listening.port);
+  ASSERT_TRUE(first.send(request));
+  while (plain.newest == 0) std::this_thread::yield();
+  const StreamId of_first = plain.newest;
+  {
+    const Client second(listening.port);
+    ASSERT_TRUE(second.send(request));
+    while (plain.newest == of_first) std::this_thread::yield();
+    server.publish_to({plain.newest, 99}, event_text("history", "all of it"));
+    server.publish(1, event_text("both", ""));
+    EXPECT_THAT(second.receive(std::chrono::seconds(5), "event: both"), HasSubstr("all of it"));
+  }
+  EXPECT_THAT(first.receive(std::chrono::seconds(5), "event: both"), Not(HasSubstr("all of it")));
+  while (plain.closed == 0) std::this_thread::yield();
+  server.publish_to({plain.newest}, event_text("history", "of a stream that has gone"));
+  server.publish_to({of_first}, event_text("last", ""));
+  EXPECT_THAT(first.receive(std::chrono::seconds(5), "event: last"), HasSubstr("event: last"));
   server.stop();
   thread.join();
 }

@@ -3,9 +3,8 @@
 import {html, useEffect, useRef, useState} from '/preact.js';
 import {Alarms} from '/alarms.js';
 import {PlotStack} from '/plots.js';
+import {KEYS, Ring} from '/ring.js';
 
-const KEYS = ['reference', 'y', 'u', 'error'];
-const KEPT_S = 120;       // what the page remembers
 const STALE_S = 3;
 const FRAME_MS = 160;
 // Of an axis that turns, m stands for rad in every message.
@@ -19,46 +18,6 @@ const specs = (units) => [
   {height: 180, label: 'error of the model, ' + units.error, series: [
     {key: 'error', name: 'measured less model', tone: 'residual'}]},
 ];
-
-/// Samples of the last KEPT_S seconds, oldest first.
-class Ring {
-  constructor() { this.clear(); }
-  clear() {
-    this.t = [];
-    for (const key of KEYS) this[key] = [];
-  }
-  add(batch) {
-    for (let i = 0; i < batch.t.length; ++i) {
-      this.t.push(batch.t[i]);
-      for (const key of KEYS) this[key].push(batch[key][i]);
-    }
-    // Cut rarely: moving the arrays costs.
-    if (this.t.length && this.t[this.t.length - 1] - this.t[0] > 1.25 * KEPT_S) {
-      const from = this.first(this.t[this.t.length - 1] - KEPT_S);
-      for (const key of ['t', ...KEYS]) this[key] = this[key].slice(from);
-    }
-  }
-  /// A missing sample: the curves have a gap here.
-  gap() {
-    if (!this.t.length) return;
-    this.t.push(this.t[this.t.length - 1] + 1e-6);
-    for (const key of KEYS) this[key].push(null);
-  }
-  first(t) {
-    let low = 0, high = this.t.length;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.t[middle] < t) low = middle + 1; else high = middle;
-    }
-    return low;
-  }
-  part(from, to) {
-    const a = Math.max(0, this.first(from) - 1), b = this.first(to) + 1;
-    const out = {t: this.t.slice(a, b)};
-    for (const key of KEYS) out[key] = this[key].slice(a, b);
-    return out;
-  }
-}
 
 // Of what is on the screen.
 function meter(values) {
@@ -134,7 +93,7 @@ export function Live({feed, link, state}) {
   const units = state.rotary ? ROTARY : LINEAR;
   now.current = {span, paused, view};
   if (!kept.current) {
-    kept.current = {ring: new Ring(), wants: true, came: 0, aged: null, fresh: false, frozen: null,
+    kept.current = {ring: new Ring(), came: 0, aged: null, fresh: false, frozen: null,
                     after: 0, lost: false};
   }
   useEffect(() => {
@@ -143,24 +102,12 @@ export function Live({feed, link, state}) {
       setView(from === null ? null : [k.base + from, k.base + to]);
     }});
     const on = {
-      hello: () => { k.wants = true; },
       history: ({detail}) => {
-        if (!k.wants) return;
-        k.wants = false;
-        // The ring of the server is whole: it fills what this page has missed, as far as it reaches.
-        const last = k.ring.t.length ? k.ring.t[k.ring.t.length - 1] : -Infinity;
-        const from = detail.t.findIndex((t) => t > last);
-        if (detail.t.length && detail.t[detail.t.length - 1] < last) k.ring.clear();  // a new run
-        else if (k.ring.t.length && detail.t.length && detail.t[0] > last) k.ring.gap();
-        const rest = from < 0 ? {t: []} : {t: detail.t.slice(from)};
-        for (const key of KEYS) rest[key] = from < 0 ? [] : detail[key].slice(from);
-        k.ring.add(rest);
+        if (!k.ring.history(detail)) k.frozen = null;
         k.fresh = true;
       },
       samples: ({detail}) => {
-        const t = k.ring.t;
-        if (t.length && detail.t[0] < t[t.length - 1]) k.ring.clear();
-        k.ring.add(detail);
+        if (!k.ring.samples(detail)) k.frozen = null;
         k.came = Date.now();
         k.fresh = true;
         if (now.current.paused) k.after += detail.t.length;

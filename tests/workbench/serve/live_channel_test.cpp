@@ -1,0 +1,143 @@
+// Pages that watch: each catches up with the whole last minute, in events that fit its queue, and
+// the others are not sent it again.
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "spoolwatch/sample_t.hpp"
+#include "workbench/serve/live_channel.h"
+
+namespace workbench::serve {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kRate_Hz = 1000;
+constexpr int kSeconds = 61;
+constexpr double kBegin_s = 1.795e9;
+
+/// A minute and a second of samples at a kilohertz.
+void write_log(const std::string& file) {
+  lcm::LogFile log(file, "w");
+  ASSERT_TRUE(log.good());
+  for (int k = 0; k < kSeconds * kRate_Hz; ++k) {
+    spoolwatch::sample_t sample{};
+    sample.run_id = 1;
+    sample.seq = sample.tick = k;
+    sample.utc_us = static_cast<std::int64_t>(kBegin_s * 1e6) + k * (1'000'000 / kRate_Hz);
+    sample.sample_time_s = 1.0 / kRate_Hz;
+    sample.y_m = 0.3 + 1e-7 * k;
+    sample.u_applied_V = 1.0;
+    std::vector<char> bytes(static_cast<std::size_t>(sample.getEncodedSize()));
+    sample.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    lcm::LogEvent event{};
+    event.timestamp = k;
+    event.channel = "LIVE_SAMPLE";
+    event.datalen = static_cast<int>(bytes.size());
+    event.data = bytes.data();
+    log.writeEvent(&event);
+  }
+}
+
+struct Sent {
+  std::string name;
+  std::string json;
+};
+
+/// What each page was sent.
+class Inboxes {
+ public:
+  void take(const std::vector<StreamId>& pages, const char* name, const std::string& json) {
+    if (std::string(name) == "status") return;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const StreamId page : pages) sent_[page].push_back({name, json});
+    }
+    more_.notify_all();
+  }
+  /// Waits until the page has that many points.
+  std::vector<Sent> when_it_has(StreamId page, std::size_t points) {
+    std::unique_lock lock(mutex_);
+    more_.wait_for(lock, std::chrono::seconds(60), [&] { return points_of(page) >= points; });
+    EXPECT_GE(points_of(page), points);
+    return sent_[page];
+  }
+
+ private:
+  std::size_t points_of(StreamId page) {
+    std::size_t points = 0;
+    for (const Sent& one : sent_[page]) {
+      points += static_cast<std::size_t>(std::count(one.json.begin(), one.json.end(), ',')) / 5;
+    }
+    return points;
+  }
+  std::mutex mutex_;
+  std::condition_variable more_;
+  std::map<StreamId, std::vector<Sent>> sent_;
+};
+
+/// Times of the points in order, s after kBegin_s.
+std::vector<double> times_of(const std::vector<Sent>& events) {
+  std::vector<double> t_s;
+  for (const Sent& one : events) {
+    const ordered_json batch = ordered_json::parse(one.json);
+    for (const ordered_json& t : batch["t"]) {
+      t_s.push_back(batch["t0"].get<double>() + t.get<double>() - kBegin_s);
+    }
+  }
+  return t_s;
+}
+
+TEST(LiveChannel, EachPageCatchesUpWithTheLastMinuteByItself) {
+  const std::string log =
+      (std::filesystem::temp_directory_path() / ("live_channel_" + std::to_string(getpid())))
+          .string();
+  write_log(log);
+  Inboxes inboxes;
+  LiveChannel channel(
+      {"file://" + log + "?mode=r&speed=0", "LIVE"},
+      [&](const auto& pages, const char* name, const std::string& json) {
+        inboxes.take(pages, name, json);
+      },
+      [] {});
+  constexpr std::size_t kAll = kSeconds * kRate_Hz;
+  constexpr std::size_t kMinute = 60 * kRate_Hz;
+  channel.open(1);
+  const std::size_t of_first = inboxes.when_it_has(1, kAll - kRate_Hz).size();
+  channel.open(2);
+  const std::vector<Sent> second = inboxes.when_it_has(2, kMinute - 10);
+  // The default of HttpLimits holds ten of them for a client that is slow.
+  constexpr std::size_t kMostBytes = HttpLimits{}.stream_bytes / 8;
+  for (const Sent& one : second) {
+    EXPECT_EQ(one.name, "history");
+    EXPECT_LT(one.json.size(), kMostBytes);
+  }
+  EXPECT_GT(second.size(), 10U);
+  EXPECT_TRUE(ordered_json::parse(second.front().json)["begins"].get<bool>());
+  EXPECT_FALSE(ordered_json::parse(second[1].json)["begins"].get<bool>());
+  EXPECT_NEAR(ordered_json::parse(second.front().json)["newest"].get<double>() - kBegin_s,
+              kSeconds - 1.0 / kRate_Hz, 1e-6);
+  const std::vector<double> t_s = times_of(second);
+  ASSERT_GE(t_s.size(), kMinute);
+  for (std::size_t k = 1; k < t_s.size(); ++k) {
+    ASSERT_NEAR(t_s[k] - t_s[k - 1], 1.0 / kRate_Hz, 1e-5) << k;
+  }
+  EXPECT_NEAR(t_s.back(), kSeconds - 1.0 / kRate_Hz, 1e-5);
+
+  channel.close(2);
+  channel.open(3);
+  (void)inboxes.when_it_has(3, kMinute - 10);
+  const std::vector<Sent> first = inboxes.when_it_has(1, 1);
+  EXPECT_LE(first.size(), of_first + 2) << "others opened and closed";
+  EXPECT_LE(times_of(first).size(), kAll);
+  channel.end();
+  std::filesystem::remove(log);
+}
+
+}  // namespace
+}  // namespace workbench::serve
