@@ -44,6 +44,13 @@ const tests = {
     assert.equal(ring.samples(batch(10, [0, 1])), false);
     assert.deepEqual(ring.t, [10, 11]);
   },
+  'a rounded time is no clock that went back': () => {
+    const ring = new Ring();
+    ring.samples(batch(1000, [0, 0.0050003]));
+    assert(ring.samples(batch(1000.005, [0, 0.005])));
+    assert(ring.history(history(1000, [0, 0.005, 0.01], true, 1000.0099999)));
+    assert.equal(ring.t.length, 4);
+  },
   'only the last minutes are kept': () => {
     const ring = new Ring();
     for (let k = 0; k < 400; ++k) ring.samples(batch(k, [0, 0.5]));

@@ -3,6 +3,7 @@
 
 export const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;
+const SAME_S = 1e-4;  // times of two batches differ by their rounding
 
 /// Samples of the last KEPT_S seconds, oldest first.
 export class Ring {
@@ -15,14 +16,14 @@ export class Ring {
 
   /// A batch that came as it was measured. False where the clock went back: what came before is gone.
   samples(batch) {
-    const goes_on = !batch.t.length || batch.t0 + batch.t[0] >= this.newest;
+    const goes_on = !batch.t.length || batch.t0 + batch.t[0] > this.newest - SAME_S;
     if (!goes_on) this.clear();
     this.add(batch, 0);
     return goes_on;
   }
   /// A batch of what the server has kept: it fills what this page has missed, as far as it reaches.
   history(batch) {
-    const goes_on = !batch.begins || batch.newest >= this.newest;
+    const goes_on = !batch.begins || batch.newest > this.newest - SAME_S;
     if (!goes_on) this.clear();
     if (batch.begins && batch.t.length && this.t.length && batch.t0 + batch.t[0] > this.newest) this.gap();
     const newest = this.newest;
