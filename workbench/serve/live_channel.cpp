@@ -22,7 +22,6 @@
 #include "workbench/live/listen_lines.h"
 #include "workbench/live/online_residual.h"
 #include "workbench/present/json.h"
-#include "workbench/present/script_json.h"
 
 namespace workbench::serve {
 namespace {
@@ -42,10 +41,6 @@ constexpr std::uint64_t kMostBatch = 4000;      ///< points; some 200 kB of text
 constexpr std::int8_t kStaleQuality = 2;        ///< and 3, bad: no new reading
 constexpr std::size_t kMostSources = 50;
 
-struct Point {
-  double t_s, reference_m, y_m, u_V, error_m;
-};
-
 double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
 }
@@ -56,8 +51,13 @@ class LiveListener final : public live::FeedListener {
     came_ = Clock::now();
     state_ = s.state;
     const bool good = s.quality < kStaleQuality && std::isfinite(s.y_m);
-    Point point{static_cast<double>(s.utc_us) * 1e-6, s.reference_m, good ? s.y_m : kNaN,
-                s.u_applied_V, kNaN};
+    LivePoint point{static_cast<double>(s.utc_us) * 1e-6,
+                    s.reference_m,
+                    good ? s.y_m : kNaN,
+                    s.u_applied_V,
+                    kNaN,
+                    s.tick,
+                    s.sample_time_s};
     if (s.gap > 0 && !points_.empty())
       append({point.t_s - s.sample_time_s, kNaN, kNaN, kNaN, kNaN});
     if (residual_ && good && std::isfinite(s.u_applied_V)) {
@@ -119,24 +119,14 @@ class LiveListener final : public live::FeedListener {
   [[nodiscard]] std::uint64_t end() const { return first_ + points_.size(); }
   [[nodiscard]] double newest_s() const { return points_.back().t_s; }
 
-  /// Points `from` to `to`, column by column, as members of a JSON object; times in s after "t0".
-  [[nodiscard]] std::string columns(std::uint64_t from, std::uint64_t to) const {
+  [[nodiscard]] std::vector<LivePoint> part(std::uint64_t from, std::uint64_t to) const {
     const auto first = points_.begin() + static_cast<std::ptrdiff_t>(from - first_);
-    const auto last = points_.begin() + static_cast<std::ptrdiff_t>(to - first_);
-    const auto column = [&](const char* name, auto value) {
-      std::vector<double> values;
-      values.reserve(static_cast<std::size_t>(last - first));
-      for (auto point = first; point != last; ++point) values.push_back(value(*point));
-      return ",\"" + std::string(name) + "\":" + present::json_numbers(values);
-    };
-    const double t0_s = first->t_s;
-    return fmt::format("\"t0\":{:.6f}", t0_s) +
-           column("t", [&](const Point& p) { return p.t_s - t0_s; }) +
-           column("reference", [](const Point& p) { return 1e3 * p.reference_m; }) +
-           column("y", [](const Point& p) { return 1e3 * p.y_m; }) +
-           column("u", [](const Point& p) { return p.u_V; }) +
-           column("error", [](const Point& p) { return 1e6 * p.error_m; });
+    return {first, first + static_cast<std::ptrdiff_t>(to - from)};
   }
+
+  void set_trigger(const TriggerSettings& settings) { trigger_ = Trigger(settings); }
+  /// The newest capture since the last call; null: none.
+  std::shared_ptr<const Capture> take_capture() { return std::exchange(capture_, nullptr); }
   [[nodiscard]] bool take_restarted() { return std::exchange(restarted_, false); }
 
   void update_model_figures() {
@@ -157,19 +147,36 @@ class LiveListener final : public live::FeedListener {
     for (const auto& [name, alarm] : alarms_) out["alarms"].push_back(alarm);
     out["model"] = model_figures_;
     out["model_note"] = model_note_;
+    const TriggerSettings& trigger = trigger_.settings();
+    out["trigger"] = {{"mode", to_string(trigger.mode)},  {"edge", to_string(trigger.edge)},
+                      {"channel", trigger.channel},       {"level", trigger.level},
+                      {"window_s", trigger.window_s},     {"before_ratio", trigger.before_ratio},
+                      {"hold_off_s", trigger.hold_off_s}, {"state", trigger_.state()}};
     return out;
   }
 
  private:
-  void append(const Point& point) {
+  void append(const LivePoint& point) {
     points_.push_back(point);
     while (points_.size() > kMostPoints || points_.front().t_s < point.t_s - kHistory_s) {
       points_.pop_front();
       ++first_;
     }
+    const double value = shown_value(point, trigger_.settings().channel);
+    if (const auto span = trigger_.add(point.t_s, value)) capture(*span);
   }
 
-  std::deque<Point> points_;
+  void capture(const Trigger::Span& span) {
+    auto made = std::make_shared<Capture>();
+    made->settings = trigger_.settings();
+    made->span = span;
+    for (const LivePoint& point : points_) {
+      if (point.t_s >= span.from_s && point.t_s <= span.to_s) made->points.push_back(point);
+    }
+    capture_ = std::move(made);
+  }
+
+  std::deque<LivePoint> points_;
   std::uint64_t first_ = 0;  ///< number of points_.front()
   std::optional<Clock::time_point> came_;
   int state_ = -1;
@@ -182,6 +189,8 @@ class LiveListener final : public live::FeedListener {
   std::optional<live::OnlineResidual> residual_;
   std::string model_note_;
   ordered_json model_figures_;
+  Trigger trigger_;
+  std::shared_ptr<const Capture> capture_;
 };
 
 struct Batch {
@@ -193,12 +202,14 @@ struct Batch {
 /// How far each page is.
 class Pages {
  public:
-  /// True where one has come.
-  bool set(const std::set<StreamId>& open) {
+  /// Those that have come.
+  std::vector<StreamId> set(const std::set<StreamId>& open) {
     std::erase_if(pages_, [&](const auto& page) { return open.count(page.first) == 0; });
-    bool more = false;
-    for (const StreamId page : open) more = pages_.try_emplace(page).second || more;
-    return more;
+    std::vector<StreamId> begin;
+    for (const StreamId page : open) {
+      if (pages_.try_emplace(page).second) begin.push_back(page);
+    }
+    return begin;
   }
   /// Another run: all that came before is of no use.
   void begin_again() {
@@ -220,7 +231,8 @@ class Pages {
       if (!place.caught_up) {
         json += fmt::format("\"begins\":{},\"newest\":{:.6f},", !place.begun, listener.newest_s());
       }
-      json += listener.columns(from, to) + "}";
+      const std::vector<LivePoint> points = listener.part(from, to);
+      json += columns_json(points, points.front().t_s) + "}";
       batches.push_back({std::move(ids), place.caught_up ? "samples" : "history", std::move(json)});
     }
     return batches;
@@ -275,6 +287,30 @@ void LiveChannel::watch_model(std::string file) {
   wish_.model = std::move(file);
 }
 
+void LiveChannel::set_trigger(const TriggerSettings& settings) {
+  const std::lock_guard lock(mutex_);
+  wish_.trigger = settings;
+  ++wish_.triggers_set;
+}
+
+std::shared_ptr<const Capture> LiveChannel::newest_capture() const {
+  const std::lock_guard lock(mutex_);
+  return capture_;
+}
+
+std::shared_ptr<const Capture> LiveChannel::number(std::shared_ptr<const Capture> capture) {
+  auto numbered = std::make_shared<Capture>(*capture);
+  const std::lock_guard lock(mutex_);
+  numbered->number = ++captures_;
+  capture_ = numbered;
+  return numbered;
+}
+
+void LiveChannel::show_capture(const std::shared_ptr<const Capture>& capture,
+                               const std::vector<StreamId>& pages) {
+  if (capture && !pages.empty()) publish_(pages, "capture", to_json(*capture));
+}
+
 LiveChannel::Wish LiveChannel::wish() const {
   const std::lock_guard lock(mutex_);
   return wish_;
@@ -304,6 +340,7 @@ void LiveChannel::listen() {
   live::ListenFeed feed(options_.url, options_.prefix, true, listener);
   Pages pages;
   std::string model;
+  std::uint64_t triggers_set = 0;
   Clock::time_point told{};
   Clock::time_point compared{};
   while (true) {
@@ -313,10 +350,21 @@ void LiveChannel::listen() {
       model = now.model;
       listener.watch(model);
     }
+    if (now.triggers_set != triggers_set) {
+      triggers_set = now.triggers_set;
+      listener.set_trigger(now.trigger);
+      told = {};
+    }
     const bool more = feed.poll(kBatch);
     if (listener.take_restarted()) pages.begin_again();
-    if (pages.set(now.pages)) told = {};
+    const std::vector<StreamId> begin = pages.set(now.pages);
+    if (!begin.empty()) told = {};
     for (const Batch& batch : pages.next(listener)) publish_(batch.pages, batch.name, batch.json);
+    show_capture(newest_capture(), begin);
+    if (const auto made = listener.take_capture()) {
+      show_capture(number(made), {now.pages.begin(), now.pages.end()});
+      told = {};
+    }
     if (Clock::now() - told >= kStatus) {
       told = Clock::now();
       if (told - compared >= kFigures) {

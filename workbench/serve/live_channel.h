@@ -7,6 +7,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "workbench/serve/http_server.h"
+#include "workbench/serve/live_points.h"
+#include "workbench/serve/trigger.h"
 
 namespace workbench::serve {
 
@@ -41,16 +44,27 @@ class LiveChannel {
   void close(StreamId page);
   /// May be called from any thread. Sets the model file that runs beside the samples; empty: none.
   void watch_model(std::string file);
+  /// May be called from any thread. While a page watches, the samples about each crossing are
+  /// captured at the full rate; the pages get the event "capture".
+  void set_trigger(const TriggerSettings& settings);
+  /// May be called from any thread; null: none yet.
+  [[nodiscard]] std::shared_ptr<const Capture> newest_capture() const;
 
  private:
   struct Wish {
     bool ends = false;
     std::set<StreamId> pages;
     std::string model;
+    TriggerSettings trigger;
+    std::uint64_t triggers_set = 0;  ///< counts them: the same ones again begin again
   };
   void run();
   void listen();
   [[nodiscard]] Wish wish() const;
+  /// Keeps it as the newest, with its number.
+  std::shared_ptr<const Capture> number(std::shared_ptr<const Capture> capture);
+  void show_capture(const std::shared_ptr<const Capture>& capture,
+                    const std::vector<StreamId>& pages);
 
   const LiveOptions options_;
   const Publish publish_;
@@ -58,6 +72,8 @@ class LiveChannel {
   mutable std::mutex mutex_;
   std::condition_variable wakes_;
   Wish wish_;
+  std::shared_ptr<const Capture> capture_;
+  std::uint64_t captures_ = 0;
   std::thread thread_;
 };
 

@@ -16,6 +16,7 @@ namespace workbench::serve {
 [[nodiscard]] std::string_view page_result();
 [[nodiscard]] std::string_view page_live();
 [[nodiscard]] std::string_view page_ring();
+[[nodiscard]] std::string_view page_trigger();
 [[nodiscard]] std::string_view page_alarms();
 // Of the npm registry; empty where the build had none.
 [[nodiscard]] std::string_view library_uplot();

@@ -1,9 +1,13 @@
 #include "workbench/serve/request_fields.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace workbench::serve {
 namespace {
@@ -89,6 +93,40 @@ ParameterValues values_in(const Json& body) {
     values[name] = value.get<double>();
   }
   return values;
+}
+
+TriggerSettings trigger_in(const Json& body) {
+  TriggerSettings settings;
+  const auto one_of = [&](const char* key, std::initializer_list<const char*> allowed) {
+    const std::string text = text_in(body, key);
+    for (const char* const one : allowed) {
+      if (text == one) return text;
+    }
+    throw UsageError(
+        std::string(key) + ": allowed: " +
+        config::schema::joined(std::vector<std::string>(allowed.begin(), allowed.end())));
+  };
+  const auto within = [&](const char* key, double otherwise, double least, double most) {
+    const double value = number_in(body, key, otherwise);
+    if (value >= least && value <= most) return value;
+    throw UsageError(fmt::format("{}: allowed: {:g} to {:g}", key, least, most));
+  };
+  const std::string mode = one_of("mode", {"off", "normal", "single"});
+  settings.mode = mode == "normal"   ? TriggerSettings::Mode::normal
+                  : mode == "single" ? TriggerSettings::Mode::single
+                                     : TriggerSettings::Mode::off;
+  settings.channel = one_of("channel", {"reference", "y", "u", "error"});
+  const std::string edge = one_of("edge", {"rising", "falling", "either"});
+  settings.edge = edge == "falling"  ? TriggerSettings::Edge::falling
+                  : edge == "either" ? TriggerSettings::Edge::either
+                                     : TriggerSettings::Edge::rising;
+  constexpr double kMost = 1e9;
+  constexpr double kLongestHoldOff_s = 3600.0;
+  settings.level = within("level", 0.0, -kMost, kMost);
+  settings.window_s = within("window_s", settings.window_s, 0.05, TriggerSettings::kLongest_s);
+  settings.before_ratio = within("before_ratio", settings.before_ratio, 0.0, 1.0);
+  settings.hold_off_s = within("hold_off_s", 0.0, 0.0, kLongestHoldOff_s);
+  return settings;
 }
 
 View view_in(const Json& body) {

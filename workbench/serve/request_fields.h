@@ -10,6 +10,7 @@
 
 #include "workbench/serve/http_server.h"
 #include "workbench/serve/study.h"
+#include "workbench/serve/trigger.h"
 
 namespace workbench::serve {
 
@@ -26,6 +27,8 @@ namespace workbench::serve {
                                double otherwise);
 /// Parameter values under "values".
 [[nodiscard]] ParameterValues values_in(const nlohmann::ordered_json& body);
+/// "mode", "channel", "edge", "level", "window_s", "before_ratio" and "hold_off_s".
+[[nodiscard]] TriggerSettings trigger_in(const nlohmann::ordered_json& body);
 /// The visible part of the time axis, "from" and "to" in s, and the rows that are drawn.
 [[nodiscard]] View view_in(const nlohmann::ordered_json& body);
 

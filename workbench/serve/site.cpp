@@ -167,6 +167,14 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   };
   if (path == "/api/preview") return preview(*body, reply);
   if (path == "/api/alarm") return order(*body, reply);
+  if (path == "/api/trigger") {
+    live_.set_trigger(trigger_in(*body));
+    return reply(json_response({{"ok", true}}));
+  }
+  if (path == "/api/capture") {
+    return on_study(
+        reply, [this] { return save_capture(); }, true);
+  }
   if (path == "/api/cancel") {
     jobs_.cancel();
     return reply(json_response({{"ok", true}}));
@@ -265,6 +273,14 @@ void Site::on_study(const HttpReply& reply, std::function<Json()> work, bool cha
       reply(refusal_of(error));
     }
   });
+}
+
+Site::Json Site::save_capture() {
+  const std::shared_ptr<const Capture> capture = live_.newest_capture();
+  if (!capture) throw UsageError("nothing has been captured yet");
+  const std::string file = folder_.fresh_name("capture.csv");
+  config::record::write_csv(record_of(*capture), folder_.path_of(file));
+  return {{"name", file}};
 }
 
 Site::Json Site::begin_fit(const Json& body) {

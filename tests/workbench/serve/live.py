@@ -54,6 +54,28 @@ def watch(args, folder):
             page.wait("parseInt(document.querySelector('.tools .hint').textContent) > 200")
             page.click_text("Resume")
 
+            # A trigger: the samples about a crossing stand, and become a record that the workbench compares.
+            page.choose("#trigger-mode", "single")
+            page.choose("#trigger-window_s", "5")
+            page.run("(() => { const s = document.querySelector('#trigger-level'); s.value = '305';"
+                     " s.dispatchEvent(new Event('change', {bubbles: true})); })()")
+            page.wait("document.querySelector('.captured')", 30)
+            page.wait("document.querySelector('#trigger-state').textContent === 'captured'")
+            count = page.run("parseInt(document.querySelector('.captured').textContent.split(':')[1])")
+            expect(f"5 s at 200 Hz: {count}", 900 <= count <= 1001)
+            page.wait("Number(document.querySelector('.stack').dataset.points) > 900")
+            if args.pictures:
+                page.picture(args.pictures / "capture.png")
+            page.click_text("Save capture")
+            page.wait("(document.querySelector('.saved') || {innerText: ''}).innerText.includes('capture.csv')")
+            page.click_text("Open in the workbench")
+            page.wait("document.querySelector('#record') && document.querySelector('#record').value === 'capture.csv'")
+            page.wait("document.querySelector('.verdict')")
+            page.run("document.querySelector('a[href=\"#live\"]').click()")
+            page.wait("document.querySelector('#trigger-mode').value === 'single'")
+            page.choose("#trigger-mode", "off")
+            page.wait("!document.querySelector('.captured')")
+
             # The page acknowledges; it has no button that moves the rod.
             page.wait("document.querySelector('.alarms li.MAJOR')", 60)
             if args.pictures:

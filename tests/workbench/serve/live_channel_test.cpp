@@ -2,6 +2,7 @@
 // the others are not sent it again.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <filesystem>
 #include <lcm/lcm-cpp.hpp>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "config/record/record.h"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/serve/live_channel.h"
 
@@ -21,6 +23,9 @@ constexpr int kRate_Hz = 1000;
 constexpr int kSeconds = 61;
 constexpr double kBegin_s = 1.795e9;
 
+/// Position of sample k: rises by 0.1 mm a second.
+double position_m(int k) { return 0.3 + 1e-7 * k; }
+
 /// A minute and a second of samples at a kilohertz.
 void write_log(const std::string& file) {
   lcm::LogFile log(file, "w");
@@ -31,7 +36,7 @@ void write_log(const std::string& file) {
     sample.seq = sample.tick = k;
     sample.utc_us = static_cast<std::int64_t>(kBegin_s * 1e6) + k * (1'000'000 / kRate_Hz);
     sample.sample_time_s = 1.0 / kRate_Hz;
-    sample.y_m = 0.3 + 1e-7 * k;
+    sample.y_m = position_m(k);
     sample.u_applied_V = 1.0;
     std::vector<char> bytes(static_cast<std::size_t>(sample.getEncodedSize()));
     sample.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
@@ -54,6 +59,7 @@ class Inboxes {
  public:
   void take(const std::vector<StreamId>& pages, const char* name, const std::string& json) {
     if (std::string(name) == "status") return;
+    if (std::string(name) == "capture") ++captures;
     {
       const std::lock_guard lock(mutex_);
       for (const StreamId page : pages) sent_[page].push_back({name, json});
@@ -67,6 +73,8 @@ class Inboxes {
     EXPECT_GE(points_of(page), points);
     return sent_[page];
   }
+
+  std::atomic<int> captures{0};
 
  private:
   std::size_t points_of(StreamId page) {
@@ -137,6 +145,52 @@ TEST(LiveChannel, EachPageCatchesUpWithTheLastMinuteByItself) {
   EXPECT_LE(times_of(first).size(), kAll);
   channel.end();
   std::filesystem::remove(log);
+}
+
+TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("live_capture_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string log = (folder / "log").string();
+  write_log(log);
+  Inboxes inboxes;
+  LiveChannel channel(
+      {"file://" + log + "?mode=r&speed=0", "LIVE"},
+      [&](const auto& pages, const char* name, const std::string& json) {
+        inboxes.take(pages, name, json);
+      },
+      [] {});
+  EXPECT_EQ(channel.newest_capture(), nullptr);
+  TriggerSettings settings;
+  settings.mode = TriggerSettings::Mode::single;
+  settings.level = 303.00005;  // mm, between the samples of 30.000 and 30.001 s
+  settings.window_s = 4.0;
+  settings.before_ratio = 0.25;
+  channel.set_trigger(settings);
+  channel.open(1);
+  (void)inboxes.when_it_has(1, 60 * kRate_Hz);
+  channel.open(2);  // is shown the newest capture too
+  (void)inboxes.when_it_has(2, 59 * kRate_Hz);
+  const auto capture = channel.newest_capture();
+  ASSERT_NE(capture, nullptr);
+  EXPECT_EQ(inboxes.captures, 2);
+  EXPECT_EQ(capture->number, 1U);
+  EXPECT_NEAR(capture->span.at_s - kBegin_s, 30.0005, 1e-5);
+  const ordered_json drawn = ordered_json::parse(to_json(*capture));
+  EXPECT_NEAR(drawn["from"].get<double>(), -1.0, 1e-9);
+  EXPECT_NEAR(drawn["to"].get<double>(), 3.0, 1e-9);
+  EXPECT_NEAR(drawn["t"].front().get<double>(), -0.9995, 1e-5);
+
+  const std::string file = (folder / "capture.csv").string();
+  config::record::write_csv(record_of(*capture), file);
+  const config::record::Record read = config::record::read_record(file);
+  ASSERT_EQ(read.size(), 4U * kRate_Hz);
+  EXPECT_NEAR(read.t_s.front(), 29.001, 1e-9);
+  EXPECT_NEAR(read.sample_time_s, 1.0 / kRate_Hz, 1e-12);
+  EXPECT_EQ(read.y_m.front(), position_m(29'001));
+  EXPECT_NE(read.column("reference_m"), nullptr);
+  channel.end();
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -247,6 +247,31 @@ TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {
   EXPECT_EQ(page.state()["trial"], "thesis+null_bias.toml");
 }
 
+TEST_F(StudyPage, ATriggerIsCheckedAndNothingIsSavedBeforeACapture) {
+  const ordered_json good{{"mode", "single"}, {"channel", "u"},      {"edge", "either"},
+                          {"level", 1.5},     {"before_ratio", 0.5}, {"window_s", 1.0},
+                          {"hold_off_s", 2}};
+  EXPECT_EQ(page.post("trigger", good).status, 200);
+  for (const ordered_json& wrong : std::vector<ordered_json>{{{"mode", "often"}},
+                                                             {{"channel", "time"}},
+                                                             {{"edge", ""}},
+                                                             {{"level", "high"}},
+                                                             {{"level", 1e300}},
+                                                             {{"window_s", 0}},
+                                                             {{"window_s", 1e6}},
+                                                             {{"before_ratio", -0.1}},
+                                                             {{"before_ratio", 1.1}},
+                                                             {{"hold_off_s", -1}}}) {
+    ordered_json body = good;
+    body.update(wrong);
+    EXPECT_EQ(page.post("trigger", body).status, 422) << wrong;
+  }
+  EXPECT_EQ(page.post("trigger").status, 422);
+  const Answer none = page.post("capture");
+  EXPECT_EQ(none.status, 422);
+  EXPECT_THAT(none.body, HasSubstr("nothing has been captured"));
+}
+
 TEST(SessionFolder, DerivedNamesDoNotGrow) {
   EXPECT_EQ(derived_name("rig.toml", "-fitted"), "rig-fitted.toml");
   EXPECT_EQ(derived_name("rig-fitted.toml", "-fitted"), "rig-fitted.toml");

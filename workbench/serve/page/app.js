@@ -49,12 +49,13 @@ function App({first}) {
       },
       progress: setProgress,
       history: pass('history'), samples: pass('samples'), status: pass('status'),
-      alarms: pass('alarms'), dropped: pass('dropped'),
+      alarms: pass('alarms'), dropped: pass('dropped'), capture: pass('capture'),
     });
   }, [view]);
   return html`
     <${Header} view=${view} show=${show} link=${link} folder=${state.folder} />
-    ${view === 'live' ? html`<${Live} feed=${feed} link=${link} state=${state} />`
+    ${view === 'live' ? html`<${Live} feed=${feed} link=${link} state=${state}
+                                     openWorkbench=${() => show('workbench')} />`
                       : html`<${Workbench} state=${state} progress=${progress} />`}`;
 }
 

@@ -4,6 +4,8 @@ import {html, useEffect, useRef, useState} from '/preact.js';
 import {Alarms} from '/alarms.js';
 import {PlotStack} from '/plots.js';
 import {KEYS, Ring} from '/ring.js';
+import {post} from '/server.js';
+import {TriggerTools} from '/trigger.js';
 
 const STALE_S = 3;
 const FRAME_MS = 160;
@@ -31,6 +33,8 @@ function meter(values) {
   }
   return n ? {low, high, peak: Math.max(Math.abs(low), Math.abs(high)), mean: sum / n} : null;
 }
+
+const clockOf = (t) => new Date(1000 * t).toTimeString().slice(0, 8);
 
 const shown = (v) => (v == null || !Number.isFinite(v) ? '' : String(+v.toPrecision(4)));
 
@@ -79,7 +83,7 @@ function Model({status, model, units}) {
     </section>`;
 }
 
-export function Live({feed, link, state}) {
+export function Live({feed, link, state, openWorkbench}) {
   const element = useRef(), kept = useRef(null);
   const [status, setStatus] = useState(null);
   const [alarms, setAlarms] = useState(null);
@@ -89,9 +93,13 @@ export function Live({feed, link, state}) {
   const [age, setAge] = useState({s: null, since: null});
   const [meters, setMeters] = useState({});
   const [held, setHeld] = useState(0);
+  const [capture, setCapture] = useState(null);   // the newest
+  const [captured, showCaptured] = useState(false);  // the picture is that of the capture
+  const [saved, setSaved] = useState('');
+  const [refused, refuse] = useState('');
   const now = useRef();
   const units = state.rotary ? ROTARY : LINEAR;
-  now.current = {span, paused, view};
+  now.current = {span, paused, view, capture: captured ? capture : null};
   if (!kept.current) {
     kept.current = {ring: new Ring(), came: 0, aged: null, fresh: false, frozen: null,
                     after: 0, lost: false};
@@ -118,14 +126,34 @@ export function Live({feed, link, state}) {
         k.aged = {s: detail.age_s, at: Date.now()};
       },
       alarms: ({detail}) => setAlarms(detail),
+      capture: ({detail}) => setCapture(detail),
     };
     for (const [name, take] of Object.entries(on)) feed.addEventListener(name, take);
 
+    // Times of a capture count from its crossing.
+    const drawCapture = (capture, view) => {
+      const [from, to] = view || [capture.from, capture.to];
+      k.base = 0;
+      stack.bands = [{spans: [[0, 0]], tone: 'link'}];
+      stack.mark = {key: capture.channel, value: capture.level};
+      stack.show(capture, from, to);
+      element.current.dataset.points = capture.t.length;
+      const inside = (key) => capture[key].filter((v, i) => capture.t[i] >= from && capture.t[i] <= to);
+      setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(inside(key))])));
+    };
     let frame = 0, told = 0;
     const draw = (time) => {
-      const {span, paused, view} = now.current;
-      const key = paused + '|' + span + '|' + view;
+      const {span, paused, view, capture} = now.current;
+      const key = paused + '|' + span + '|' + view + '|' + (capture ? capture.number : '');
       if (!k.fresh && key === k.key) return;
+      if (capture) {
+        if (key === k.key) return;
+        k.key = key;
+        drawCapture(capture, view);
+        return;
+      }
+      stack.bands = [];
+      stack.mark = null;
       const t = k.ring.t;
       if (paused && !k.frozen && t.length) k.frozen = t[t.length - 1];
       if (!paused) { k.frozen = null; k.after = 0; }
@@ -164,6 +192,15 @@ export function Live({feed, link, state}) {
     };
   }, [units]);
 
+  const open = async () => {
+    try {
+      refuse('');
+      await post('record', {name: saved});
+      openWorkbench();
+    } catch (error) {
+      refuse(error.message);
+    }
+  };
   const stale = !link.alive || age.s === null || age.s > STALE_S;
   const health = (status && status.health) || {};
   const ago = age.s === null ? 'no sample yet'
@@ -181,8 +218,16 @@ export function Live({feed, link, state}) {
           <label class="row">window <select value=${span}
             onChange=${(e) => { setView(null); setSpan(+e.target.value); }}>
             ${[5, 10, 30, 60, 120].map((s) => html`<option value=${s}>${s} s</option>`)}</select></label>
-          ${view && html`<button onClick=${() => setView(null)}>Back to live</button>`}
+          ${view && html`<button onClick=${() => setView(null)}>
+            ${captured && capture ? 'Whole capture' : 'Back to live'}</button>`}
         </p>
+        <${TriggerTools} status=${status} units=${units} capture=${capture} onSaved=${setSaved}
+          onShow=${(on) => { setView(null); showCaptured(on); }} />
+        ${captured && capture && html`
+          <p class="captured">capture ${capture.number}: ${capture.samples} samples, crossing at ${clockOf(capture.t0)}</p>`}
+        ${saved && html`<p class="saved">saved as <b>${saved}</b>${' '}
+          <button onClick=${open}>Open in the workbench</button>
+          ${' '}<span class="warn">${refused}</span></p>`}
         <div class="stack" ref=${element}></div>
         <${Meters} meters=${meters} units=${units} />
       </div>

@@ -47,12 +47,32 @@ function level(stack, key) {
   };
 }
 
+/// A line at the level of a trigger, in the plot that has its channel.
+function mark(stack, spec) {
+  return (plot) => {
+    const at = stack.mark;
+    if (!at || !spec.series.some((s) => s.key === at.key)) return;
+    const {ctx, bbox} = plot;
+    const y = plot.valToPos(at.value, 'y', true);
+    if (y < bbox.top || y > bbox.top + bbox.height) return;
+    ctx.save();
+    ctx.strokeStyle = colour('link');
+    ctx.setLineDash([2, 4]);
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, y);
+    ctx.lineTo(bbox.left + bbox.width, y);
+    ctx.stroke();
+    ctx.restore();
+  };
+}
+
 /// Plots below each other. specs: [{height, label, level, series: [{key, name, tone, dash, width}]}].
 export class PlotStack {
   constructor(element, specs, {onZoom, onBand, xLabel = 'time, s'} = {}) {
     this.specs = specs;
     this.bands = [];
     this.levels = {};
+    this.mark = null;  // {key, value}
     this.dragMeaning = 'zoom';
     this.shown = false;
     const key = 'stack-' + Math.random();
@@ -72,7 +92,7 @@ export class PlotStack {
                    value: (u, v) => (v == null ? '' : String(+v.toPrecision(4)))}))],
         hooks: {
           drawAxes: [bands(this)],
-          draw: spec.level ? [level(this, spec.level)] : [],
+          draw: [...(spec.level ? [level(this, spec.level)] : []), mark(this, spec)],
           setSelect: [(plot) => {
             if (plot.select.width < 5) return;
             const from = plot.posToVal(plot.select.left, 'x');

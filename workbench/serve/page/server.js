@@ -82,7 +82,7 @@ export function listen(live, handlers) {
     if (document.hidden) return;
     source = new EventSource('/api/events' + (live ? '?live' : ''));
     for (const name of ['hello', 'beat', 'state', 'progress', 'history', 'samples', 'status', 'alarms',
-                        'dropped']) {
+                        'dropped', 'capture']) {
       source.addEventListener(name, take(name));
     }
     source.onerror = () => {
