@@ -13,6 +13,7 @@ namespace workbench::serve {
 [[nodiscard]] std::string_view page_workbench();
 [[nodiscard]] std::string_view page_sliders();
 [[nodiscard]] std::string_view page_ladder();
+[[nodiscard]] std::string_view page_laws();
 [[nodiscard]] std::string_view page_result();
 [[nodiscard]] std::string_view page_live();
 [[nodiscard]] std::string_view page_ring();

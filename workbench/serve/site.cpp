@@ -190,6 +190,16 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
     });
     return;
   }
+  if (path == "/api/laws") {
+    study_lane_.post([this, reply] {
+      try {
+        reply({.body = study_.laws()});
+      } catch (const std::exception& error) {
+        reply(refusal_of(error));
+      }
+    });
+    return;
+  }
   if (path == "/api/record")
     return change([=, this] { study_.open_record(text_in(*body, "name")); });
   if (path == "/api/model") return change([=, this] { study_.open_model(text_in(*body, "name")); });

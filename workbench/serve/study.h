@@ -71,6 +71,9 @@ class Study {
   [[nodiscard]] nlohmann::ordered_json state();
   /// Curves of what is open: JSON text.
   [[nodiscard]] std::string curves(const View& view) const;
+  /// The laws of what is shown beside the record's samples, and those of the model before a trial:
+  /// JSON text.
+  [[nodiscard]] std::string laws() const;
   /// Model and error with other values, at the rows of curves() for the same view.
   [[nodiscard]] std::string preview(const ParameterValues& values, const View& view) const;
 

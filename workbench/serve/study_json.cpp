@@ -8,6 +8,7 @@
 #include "estimator/greybox/parameter_catalogue.h"
 #include "workbench/compare/comparison_report.h"
 #include "workbench/compare/region_spans.h"
+#include "workbench/laws/laws.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/present/json.h"
 #include "workbench/present/plot_data.h"
@@ -284,6 +285,39 @@ std::string Study::columns(const validation::ModelErrors* changed, const View& v
          present::json_number(rms_m) + R"(,"position_unit":)" +
          present::json_string(position == "m" ? config::units::axis_unit("mm") : "m" + position) +
          R"(,"command_unit":)" + present::json_string(shown.prepared.units.command) + "}";
+}
+
+namespace {
+
+std::string json_of(const laws::LawCurve& curve) {
+  return R"({"x":)" + present::json_numbers(curve.x) + R"(,"y":)" + present::json_numbers(curve.y) +
+         "}";
+}
+
+}  // namespace
+
+std::string Study::laws() const {
+  const Shown& shown = front();
+  const present::PrintedAxis axis(motion());
+  const std::vector<laws::Law> all = laws::laws_of(shown.prepared.model, shown.comparison);
+  std::vector<laws::Law> before;
+  if (tried_ && accepted_) before = laws::laws_of(accepted_->prepared.model, shown.comparison);
+  std::string json = R"({"laws":[)";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const laws::Law& law = all[i];
+    const auto label = [](const std::string& name, const std::string& unit) {
+      return present::json_string(name + ", " + unit);
+    };
+    json +=
+        std::string(i == 0 ? "" : ",") + R"({"title":)" + present::json_string(law.title) +
+        R"(,"x":)" + label(law.x_name, law.x_unit) + R"(,"y":)" + label(law.y_name, law.y_unit) +
+        R"(,"note":)" + present::json_string(law.note) + R"(,"model":)" + json_of(law.model) +
+        R"(,"samples":)" + json_of(law.samples) + R"(,"mean":)" + json_of(law.mean) +
+        R"(,"before":)" +
+        (i < before.size() && before[i].title == law.title ? json_of(before[i].model) : "null") +
+        "}";
+  }
+  return json + "]}";
 }
 
 ordered_json Study::state() {

@@ -84,6 +84,17 @@ def story(args, folder):
             for name in ("null_bias", "friction")))
         expect("the error after", figure(page, "error, drift-corrected") == "2.43 µm")
         picture(page, "trial")
+        # The laws of both models beside what the record shows.
+        page.run("document.querySelector('details.laws summary').click()")
+        page.wait("document.querySelector('.law-curve svg path.model')")
+        page.wait("document.querySelector('.law-curve svg path.before')")
+        laws = page.run("document.querySelector('details.laws').textContent")
+        for text in ("Speed over command", "speed, mm/s", "Resisting force over speed", "force, N"):
+            expect(f"{text} in {laws}", text in laws)
+        expect("samples are drawn", page.run("document.querySelector('.law-curve .dots').getAttribute('d').length") > 3000)
+        if args.pictures:
+            page.run("document.querySelector('details.laws').scrollIntoView({block: 'end'})")
+        picture(page, "laws")
         page.click_text("Accept")
         page.wait("document.querySelector('#model').value === 'thesis-diagnosed.toml'")
         rows = page.run("[...document.querySelectorAll('.ladder .error')].map((e) => e.textContent)")

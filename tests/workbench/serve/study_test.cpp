@@ -236,6 +236,24 @@ TEST_F(StudyPage, AModelThatCannotBeOpenedLeavesTheUnits) {
   EXPECT_EQ(config::units::moving_part(), "rod");
 }
 
+TEST_F(StudyPage, LawsAreThoseOfTheModelAndOfTheOneBefore) {
+  const auto laws = [&] { return ordered_json::parse(page.post("laws").body)["laws"]; };
+  const ordered_json alone = laws();
+  ASSERT_EQ(alone.size(), 2U);
+  EXPECT_EQ(alone[0]["x"], "command, V");
+  EXPECT_TRUE(alone[0]["before"].is_null());
+  EXPECT_GT(alone[0]["samples"]["x"].size(), 500U);
+  EXPECT_EQ(alone[1]["y"], "force, N");
+  EXPECT_TRUE(alone[1]["samples"]["x"].empty());
+  ASSERT_EQ(page.post("add", {{"effect", "deadband"}}).status, 200);
+  const ordered_json trial = laws();
+  EXPECT_EQ(trial[0]["before"], alone[0]["model"]);
+  EXPECT_NE(trial[0]["model"]["y"], alone[0]["model"]["y"]);
+  ServedFolder empty({}, "served_empty");
+  empty.log_in();
+  EXPECT_EQ(empty.post("laws").status, 422);
+}
+
 TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {
   for (const char* const expected :
        {"thesis-fitted.toml", "thesis-fitted-2.toml", "thesis-fitted-3.toml"}) {

@@ -1,6 +1,7 @@
 // The workbench: a record against a model, where it fails, what would help, try, accept or undo.
 import {html, useEffect, useRef, useState} from '/preact.js';
 import {Ladder} from '/ladder.js';
+import {Laws} from '/laws.js';
 import {PlotStack} from '/plots.js';
 import {Result} from '/result.js';
 import {latest, post, upload} from '/server.js';
@@ -256,6 +257,7 @@ export function Workbench({state, progress}) {
                     selected=${plots.selected} select=${plots.select} />
         <${Bands} ignored=${state.ignored} act=${act} />
         ${plots.view}
+        <${Laws} state=${state} />
       </div>
       <div class="right">
         <section class="next">
