@@ -14,6 +14,10 @@ namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string random_words(const selection::Disturbance& d) {
+  if (d.as == "reading") {
+    return "a random walk of the position's reading, " + config::units::length_words(d.value) +
+           " RMS in a second";
+  }
   const std::string size = config::units::words(
       config::units::quantity(d.as == "force" ? "force_N" : "speed_mps", d.value, std::nan("")));
   return fmt::format("a random {} of {} RMS, most of it below {:.2g} Hz", d.as, size, d.corner_Hz);

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 /// Walk of the position per sample over the sensor's noise: the gain of a stationary filter that
 /// knows nothing else, so that the least is a tenth of the weak observer's.
 constexpr double kLeastWalk_ratio = 0.1;
-constexpr double kMostWalk_ratio = 30.0;
+constexpr double kMostWalk_ratio = 150.0;
 /// Turns of the corner frequency over the longest record: a slower force is a constant to it.
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate

@@ -95,7 +95,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
 
 /// True where the disturbance is so slow that it may be a drift of the rig.
 bool drifts(const Diagnosis& result, const FitDataset& data) {
-  return result.disturbance && result.disturbance->value > 0.0 &&
+  return result.disturbance && result.disturbance->corner_Hz > 0.0 &&
          result.disturbance->corner_Hz * length_s(data) < kPeriodsOfDrift;
 }
 

@@ -12,17 +12,26 @@ using Eigen::Index;
 
 /// A disturbance of less than this share of the sensor's noise, RMS, is none.
 constexpr double kSeen = 0.3;
+/// Share of the random part's square above which it is the walk of the reading.
+constexpr double kMostly = 0.5;
 
 struct RecordDisturbance {
   double random_m2 = 0.0;
+  double walk_m2 = 0.0;  ///< what the walk of the position alone would cause
   std::vector<disturbance::LineAmplitude> lines;
 };
 
 RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   const Dataset& record = stage.context.problem.data.records[r];
   RecordDisturbance result;
-  const double all_m = disturbance::disturbed_rms_m(stage.linear[r], record, stage.noise.noise);
-  result.random_m2 = std::max(0.0, all_m * all_m - std::pow(stage.noise.noise.sensor_m, 2));
+  const auto caused_m2 = [&](const disturbance::NoiseParameters& noise) {
+    const double all_m = disturbance::disturbed_rms_m(stage.linear[r], record, noise);
+    return std::max(0.0, all_m * all_m - noise.sensor_m * noise.sensor_m);
+  };
+  result.random_m2 = caused_m2(stage.noise.noise);
+  disturbance::NoiseParameters walk = stage.noise.noise;
+  walk.disturbance_sd = 0.0;
+  result.walk_m2 = caused_m2(walk);
   for (std::size_t i = 0; i < stage.noise.waves.size(); ++i) {
     result.lines.push_back(disturbance::line_amplitude(
         stage.linear[r], record, stage.noise.lines[i], stage.noise.waves[i][r]));
@@ -60,6 +69,7 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
   const FitDataset& data = stage.context.problem.data;
   Disturbance result;
   double random_m2 = 0.0;
+  double walk_m2 = 0.0;
   double total_m2 = 0.0;
   double counted = 0.0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -67,6 +77,7 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
     const auto samples = static_cast<double>(data.records[r].size());
     counted += samples;
     random_m2 += samples * one.random_m2;
+    walk_m2 += samples * one.walk_m2;
     total_m2 += samples * one.random_m2;
     result.lines.resize(one.lines.size());
     for (std::size_t i = 0; i < one.lines.size(); ++i) {
@@ -83,7 +94,11 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
     line.rms_m = std::sqrt(line.rms_m / counted);
   }
   result.as = site_of(stage, disturbance::LineSite::force);
-  if (std::sqrt(random_m2 / counted) > kSeen * data.noise_floor_m) {
+  const bool seen = std::sqrt(random_m2 / counted) > kSeen * data.noise_floor_m;
+  if (seen && walk_m2 > kMostly * random_m2) {
+    result.as = "reading";
+    result.value = stage.noise.noise.walk_m / std::sqrt(data.sample_time_s);
+  } else if (seen) {
     result.value = stage.noise.noise.disturbance_sd;
     result.corner_Hz = stage.noise.noise.corner_Hz;
   }

@@ -18,9 +18,11 @@ struct DisturbanceLine {
 };
 
 struct Disturbance {
-  std::string as;  ///< kind of the random part: "force", or "speed" where the plant has no force
-  double value = 0.0;      ///< RMS, N or m/s; 0 where only lines are seen
-  double corner_Hz = 0.0;  ///< below which most of it lies
+  /// Kind of the random part: "force", "speed" where the plant has no force, or "reading" where
+  /// most of it is a random walk of the position's reading.
+  std::string as;
+  double value = 0.0;      ///< RMS, N or m/s; of a reading m after one second; 0: only lines seen
+  double corner_Hz = 0.0;  ///< below which most of it lies; 0 of a reading
   double rms_m = 0.0;      ///< part of the simulation's error, random part and lines together
   double share = 0.0;      ///< share of the final model's mean squared error
   std::vector<DisturbanceLine> lines;
