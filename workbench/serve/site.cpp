@@ -208,6 +208,9 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   }
   if (path == "/api/ignore") return change([=, this] { study_.ignore(texts_in(*body, "spans")); });
   if (path == "/api/add") return change([=, this] { study_.add_effect(text_in(*body, "effect")); });
+  if (path == "/api/beside") {
+    return change([=, this] { study_.put_beside(text_in(*body, "name")); });
+  }
   if (path == "/api/accept") return change([this] { study_.accept(); });
   if (path == "/api/undo") return change([this] { study_.undo(); });
   if (path == "/api/report") {

@@ -142,12 +142,21 @@ void Study::show(Open next) {
   if (!next.record.empty()) (void)folder_.existing(next.record);
   std::optional<Shown> accepted = shown_of(next.record, next.model, next.ignored);
   std::optional<Shown> tried = shown_of(next.record, next.trial, next.ignored);
+  std::optional<Shown> beside;
+  if (next.beside == (next.trial.empty() ? next.model : next.trial)) next.beside.clear();
+  try {
+    beside = shown_of(next.record, next.beside, next.ignored);
+  } catch (const config::schema::Error&) {
+    if (next.beside != open_.beside) throw;
+    next.beside.clear();  // its file has gone, or it cannot be compared with this record
+  }
   note_errors(next, next.model, accepted);
   note_errors(next, next.trial, tried);
   save(next);
   open_ = std::move(next);
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
+  beside_ = std::move(beside);
 }
 
 void Study::show_model(const std::string& model) {
@@ -242,6 +251,20 @@ void Study::undo() {
   const ModelNode* const node = open_.lineage.find(open_.model);
   if (node == nullptr || node->parent.empty()) throw UsageError("there is nothing to undo");
   show_model(node->parent);
+}
+
+void Study::put_beside(const std::string& model) {
+  (void)front();
+  if (!model.empty()) (void)folder_.existing(model);
+  if (model == shown_model()) throw UsageError("this model is the one that is shown");
+  Open next = open_;
+  next.beside = model;
+  show(std::move(next));
+}
+
+const Study::Shown* Study::ghost() const {
+  if (beside_) return &*beside_;
+  return tried_ && accepted_ ? &*accepted_ : nullptr;
 }
 
 const Study::Shown& Study::front() const {

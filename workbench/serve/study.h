@@ -50,6 +50,8 @@ class Study {
   /// The model with an effect of typical size, as a trial.
   void add_effect(const std::string& effect);
   void accept();
+  /// Another model beside the one that is shown; empty: none. It stays until another is opened.
+  void put_beside(const std::string& model);
   /// Gives up the trial; without one, back to the model that this one came from.
   void undo();
   /// Writes the report of `compare` beside the record; its file name.
@@ -81,6 +83,7 @@ class Study {
   /// The session, as it is saved, and what follows from its files alone.
   struct Open {
     std::string record, model, trial;
+    std::string beside;  ///< not saved
     std::vector<std::string> ignored;
     Lineage lineage;
     std::optional<plant_sim::ModelFile> shown;  ///< the trial, or else the model
@@ -105,13 +108,16 @@ class Study {
   /// The trial, or else the model.
   [[nodiscard]] const std::string& shown_model() const;
   [[nodiscard]] const Shown& front() const;
+  /// Drawn beside it: what was put there, or the model before the trial; null: none.
+  [[nodiscard]] const Shown* ghost() const;
+  [[nodiscard]] nlohmann::ordered_json side_by_side() const;
   /// `changed`: the curves of a model with other values, alone; null: everything.
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
   void save(const Open& open) const;
 
   const SessionFolder& folder_;
   Open open_;
-  std::optional<Shown> accepted_, tried_;
+  std::optional<Shown> accepted_, tried_, beside_;
 };
 
 }  // namespace workbench::serve

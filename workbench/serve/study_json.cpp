@@ -17,6 +17,7 @@
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
 #include "workbench/present/text.h"
+#include "workbench/serve/model_difference.h"
 #include "workbench/serve/study.h"
 
 namespace workbench::serve {
@@ -250,7 +251,7 @@ std::vector<Column> model_columns(const greybox::Dataset& record,
 
 std::string Study::columns(const validation::ModelErrors* changed, const View& view) const {
   const Shown& shown = front();
-  const Shown* const ghost = tried_ && accepted_ ? &*accepted_ : nullptr;
+  const Shown* const ghost = this->ghost();
   const validation::Comparison& c = shown.comparison;
   const greybox::Dataset& record = c.record;
   const double greatest_m = std::max(c.rms_m, ghost != nullptr ? ghost->comparison.rms_m : 0.0);
@@ -301,7 +302,9 @@ std::string Study::laws() const {
   const present::PrintedAxis axis(motion());
   const std::vector<laws::Law> all = laws::laws_of(shown.prepared.model, shown.comparison);
   std::vector<laws::Law> before;
-  if (tried_ && accepted_) before = laws::laws_of(accepted_->prepared.model, shown.comparison);
+  if (const Shown* const other = ghost()) {
+    before = laws::laws_of(other->prepared.model, shown.comparison);
+  }
   std::string json = R"({"laws":[)";
   for (std::size_t i = 0; i < all.size(); ++i) {
     const laws::Law& law = all[i];
@@ -318,6 +321,29 @@ std::string Study::laws() const {
         "}";
   }
   return json + "]}";
+}
+
+ordered_json Study::side_by_side() const {
+  if (!beside_) return nullptr;
+  const Shown& shown = front();
+  const auto figures = [](const Shown& one) {
+    ordered_json texts = ordered_json::array();
+    for (const double value_m :
+         {one.comparison.rms_m, one.heldout_m, one.comparison.free_run_rms_m}) {
+      texts.push_back(typeset(config::units::length_words(value_m)));
+    }
+    return texts;
+  };
+  ordered_json out{{"model", open_.beside}, {"shown", shown_model()}};
+  out["figures"] = {{"labels", {"error, drift-corrected", "held-out blocks", "free run"}},
+                    {"here", figures(shown)},
+                    {"there", figures(*beside_)}};
+  out["differences"] = ordered_json::array();
+  for (const ModelDifference& one : differences(shown.prepared.model, beside_->prepared.model)) {
+    out["differences"].push_back(
+        {{"name", one.name}, {"here", typeset(one.here)}, {"there", typeset(one.there)}});
+  }
+  return out;
 }
 
 ordered_json Study::state() {
@@ -346,6 +372,7 @@ ordered_json Study::state() {
     out["effects"] = listed_effects(*open_.shown);
   }
   const ordered_json lineage = to_json(open_.lineage);
+  out["beside"] = side_by_side();
   out["lineage"] = lineage["nodes"];
   for (ordered_json& node : out["lineage"]) {
     const ModelNode* const known = open_.lineage.find(node["model"].get<std::string>());

@@ -100,6 +100,20 @@ def story(args, folder):
         rows = page.run("[...document.querySelectorAll('.ladder .error')].map((e) => e.textContent)")
         expect(f"the ladder falls: {rows}", rows == ["1.96 mm", "2.42 µm"])
 
+        # The first model beside the accepted one: errors, and only what differs.
+        page.click("button[aria-label='beside thesis.toml']")
+        page.wait("document.querySelector('.side-by-side')")
+        sides = page.run("document.querySelector('.side-by-side').innerText")
+        for text in ("thesis-diagnosed.toml", "1.92 mm", "2.43 µm", "friction.coulomb_N", "null_bias.offset_V"):
+            expect(f"{text} in {sides}", text in sides)
+        for text in ("area_m2", "friction.static_N"):
+            expect(f"{text} does not differ", text not in sides)
+        page.wait("[...document.querySelectorAll('.u-label')].some((l) => l.textContent === 'thesis.toml')")
+        page.run("document.querySelector('.side-by-side').scrollIntoView({block: 'start'})")
+        picture(page, "side-by-side")
+        page.click("button[aria-label='beside thesis.toml']")
+        page.wait("!document.querySelector('.side-by-side')")
+
         # Checked on another record, and taken away.
         page.drop_files("#upload", [tour / "steps.csv"])
         page.wait("document.querySelector('#record').value === 'steps.csv'")

@@ -12,6 +12,7 @@
 #include "workbench/present/text.h"
 #include "workbench/serve/jobs.h"
 #include "workbench/serve/lane.h"
+#include "workbench/serve/model_difference.h"
 #include "workbench/serve/study.h"
 
 namespace workbench::serve {
@@ -252,6 +253,44 @@ TEST_F(StudyPage, LawsAreThoseOfTheModelAndOfTheOneBefore) {
   ServedFolder empty({}, "served_empty");
   empty.log_in();
   EXPECT_EQ(empty.post("laws").status, 422);
+}
+
+TEST_F(StudyPage, TwoModelsStandSideBySideWithWhatDiffers) {
+  ASSERT_EQ(page.post("add", {{"effect", "null_bias"}}).status, 200);
+  ASSERT_EQ(page.post("accept").status, 200);
+  EXPECT_TRUE(page.state()["beside"].is_null());
+  ASSERT_EQ(page.post("beside", {{"name", "thesis.toml"}}).status, 200);
+  const ordered_json beside = page.state()["beside"];
+  EXPECT_EQ(beside["model"], "thesis.toml");
+  EXPECT_EQ(beside["shown"], "thesis+null_bias.toml");
+  EXPECT_EQ(beside["figures"]["there"][0], "1.92 mm");
+  ASSERT_EQ(beside["differences"].size(), 1U);
+  EXPECT_EQ(beside["differences"][0]["name"], "null_bias.offset_V");
+  EXPECT_EQ(beside["differences"][0]["there"], "-");
+  const ordered_json curves = ordered_json::parse(page.post("curves", {{"rows", 400}}).body);
+  EXPECT_EQ(curves["ghost_model"].size(), curves["t"].size());
+  EXPECT_EQ(page.post("beside", {{"name", "thesis+null_bias.toml"}}).status, 422);
+  EXPECT_EQ(page.post("beside", {{"name", "none.toml"}}).status, 422);
+  EXPECT_EQ(page.state()["beside"]["model"], "thesis.toml");
+
+  // It stays while the record changes, and goes with its file.
+  std::filesystem::copy(kTour / "steps.csv", page.session);
+  ASSERT_EQ(page.post("record", {{"name", "steps.csv"}}).status, 200);
+  EXPECT_EQ(page.state()["beside"]["model"], "thesis.toml");
+  std::filesystem::remove(page.session / "thesis.toml");
+  ASSERT_EQ(page.post("record", {{"name", "multisine.csv"}}).status, 200);
+  EXPECT_TRUE(page.state()["beside"].is_null());
+}
+
+TEST_F(StudyPage, ModelsThatDifferTooLittleForThreeDigitsAreToldApart) {
+  plant_sim::ModelFile here = plant_sim::load_model(path("thesis.toml"));
+  plant_sim::ModelFile there = here;
+  EXPECT_TRUE(differences(here, there).empty());
+  *there.value("mass_kg") *= 1.0 + 1e-6;
+  const std::vector<ModelDifference> found = differences(here, there);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].name, "mass_kg");
+  EXPECT_NE(found[0].here, found[0].there);
 }
 
 TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {

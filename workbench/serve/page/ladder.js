@@ -20,7 +20,7 @@ function tree(nodes) {
   return out;
 }
 
-export function Ladder({state, open}) {
+export function Ladder({state, open, beside}) {
   const nodes = tree(state.lineage.filter((n) => n.record === state.record || n.model === state.model));
   const errors = nodes.map((n) => n.heldout_m).filter((v) => v > 0);
   if (errors.length === 0) return null;
@@ -37,6 +37,10 @@ export function Ladder({state, open}) {
                   onClick=${() => open(node.model)}
                   aria-current=${node.model === state.model}>${node.model}</button>
           <span class="what">${node.model === state.trial ? 'trial: ' : ''}${node.what}</span>
+          ${node.model !== (state.trial || state.model) && html`
+            <button class="beside" aria-pressed=${Boolean(state.beside) && state.beside.model === node.model}
+                    onClick=${() => beside(state.beside && state.beside.model === node.model ? '' : node.model)}
+                    aria-label=${'beside ' + node.model}>beside</button>`}
           ${node.heldout_m > 0 && html`
             <span class="bar"><i style=${{width: 100 * share(node.heldout_m, floor, worst) + '%'}}></i>
               ${floor > 0 && html`<b style=${{left: 100 * share(floor, floor, worst) + '%'}}></b>`}</span>

@@ -41,7 +41,7 @@ export function path({x, y}, across, up) {
   return text;
 }
 
-function Law({law}) {
+function Law({law, beside}) {
   const lists = [law.model, law.mean, law.before, law.samples].filter(Boolean);
   const xs = range(...lists.map((one) => one.x)), ys = range(...lists.map((one) => one.y));
   if (!xs || !ys) return null;
@@ -50,7 +50,7 @@ function Law({law}) {
   const dots = law.samples.x.map((v, i) => (law.samples.y[i] == null ? ''
     : `M${across(v).toFixed(1)} ${up(law.samples.y[i]).toFixed(1)}h0`)).join('');
   const keys = [['dot', 'samples', law.samples.x.length], ['mean', 'their mean', law.mean.x.length],
-                ['before', 'model before', law.before], ['model', 'model', true]].filter((k) => k[2]);
+                ['before', beside || 'model before', law.before], ['model', 'model', true]].filter((k) => k[2]);
   return html`
     <figure class="law-curve">
       <figcaption><b>${law.title}</b> <small>${law.note}</small></figcaption>
@@ -88,6 +88,7 @@ export function Laws({state}) {
     <details class="laws" open=${open} onToggle=${(e) => setOpen(e.target.open)}>
       <summary>Laws of the model as curves</summary>
       ${got.error && html`<p class="warn">${got.error}</p>`}
-      <div class="law-curves">${got.laws.map((law) => html`<${Law} key=${law.title} law=${law} />`)}</div>
+      <div class="law-curves">${got.laws.map((law) => html`<${Law} key=${law.title} law=${law}
+        beside=${state.beside && state.beside.model} />`)}</div>
     </details>`;
 }

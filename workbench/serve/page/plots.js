@@ -137,6 +137,13 @@ export class PlotStack {
     });
   }
 
+  /// Another name for a curve in the legend.
+  rename(i, key, name) {
+    const at = this.specs[i].series.findIndex((s) => s.key === key) + 1;
+    const label = this.plots[i].root.querySelectorAll('.u-series')[at].querySelector('.u-label');
+    if (label && label.textContent !== name) label.textContent = name;
+  }
+
   label(i, text) {
     this.plots[i].axes[1].label = text;
   }

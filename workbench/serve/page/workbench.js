@@ -79,6 +79,22 @@ function Verdict({shown, trial, act, selected, select}) {
     </section>`;
 }
 
+/// Two models side by side: their errors, and only what differs.
+function SideBySide({beside}) {
+  if (!beside) return null;
+  const {figures, differences} = beside;
+  return html`
+    <section class="side-by-side">
+      <table><thead><tr><th></th><th>${beside.shown}</th><th>${beside.model}</th></tr></thead>
+        <tbody>${figures.labels.map((label, i) => html`
+          <tr><td>${label}</td><td class="n">${figures.here[i]}</td><td class="n">${figures.there[i]}</td></tr>`)}
+        ${differences.map((one) => html`
+          <tr key=${one.name}><td>${one.name}</td><td class="n">${one.here}</td><td class="n">${one.there}</td></tr>`)}
+        </tbody></table>
+      ${differences.length === 0 && html`<p class="hint">Their parameters are the same.</p>`}
+    </section>`;
+}
+
 function Bands({ignored, act}) {
   if (ignored.length === 0) return null;
   return html`<p class="bands">Left out: ${ignored.map((span) => html`
@@ -114,6 +130,8 @@ function usePlots({state, values, rms}) {
     }
     if (!stack.current) return;
     stack.current.levels.floor = curves.floor;
+    const ghost = moved ? 'before' : state.beside ? state.beside.model : 'before';
+    for (const i of [0, 1]) stack.current.rename(i, i === 0 ? 'ghost_model' : 'ghost_error', ghost);
     stack.current.label(0, 'position, ' + curves.position_unit);
     stack.current.label(1, 'error, ' + curves.unit);
     stack.current.label(2, 'command, ' + curves.command_unit);
@@ -255,6 +273,7 @@ export function Workbench({state, progress}) {
           model fails, and finds out what it misses.</p>`}
         <${Verdict} shown=${state.shown} trial=${state.trial} act=${act}
                     selected=${plots.selected} select=${plots.select} />
+        <${SideBySide} beside=${state.beside} />
         <${Bands} ignored=${state.ignored} act=${act} />
         ${plots.view}
         <${Laws} state=${state} />
@@ -270,7 +289,8 @@ export function Workbench({state, progress}) {
         </section>
         <${Progress} progress=${progress} running=${state.running} cancel=${() => run('cancel')} />
         <${Result} result=${state.result} run=${run} running=${state.running} />
-        <${Ladder} state=${state} open=${(name) => run('model', {name})} />
+        <${Ladder} state=${state} open=${(name) => run('model', {name})}
+                   beside=${(name) => run('beside', {name})} />
         <${Commands} commands=${state.commands} shown=${state.shown}
                      preview=${preview && preview.command} />
         <${Exports} state=${state} act=${act} say=${say} />
