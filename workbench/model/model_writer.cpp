@@ -33,7 +33,7 @@ void ModelWriter::value(const std::string& key, double value, double prior_ratio
                         const std::string& comment) {
   values_.emplace_back(key, value);
   parameters_ += line(key, value, comment);
-  if (!std::isnan(prior_ratio)) priors_ += line(key, prior_ratio, "");
+  if (value > 0.0 && !std::isnan(prior_ratio)) priors_ += line(key, prior_ratio, "");
 }
 
 void ModelWriter::initial(const std::string& key, double value, const std::string& comment) {
