@@ -7,6 +7,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/reading_faults.h"
 
 namespace workbench::present {
 
@@ -43,6 +44,51 @@ std::string misfit(const plant_sim::ModelFile& model, const plant_sim::Change& c
                      config::units::length_words(*most_m));
 }
 
+/// "3.198:3.202", for --ignore.
+std::string span_words(const greybox::Dataset& data, const greybox::SampleRange& span) {
+  const double half_s = 0.4 * data.sample_time_s;
+  return fmt::format("{:.9g}:{:.9g}", data.t_s[span.begin] - half_s,
+                     data.t_s[span.end - 1] + half_s);
+}
+
+constexpr std::size_t kMostListed = 6;
+
+/// " (--ignore 3.2:3.21 7:7.4)", or where the first is.
+std::string remedy(const greybox::Dataset& data, const std::vector<greybox::SampleRange>& spans) {
+  if (spans.size() > kMostListed) {
+    return fmt::format("; {} places, the first at {:.6g} s: mend the record", spans.size(),
+                       data.t_s[spans.front().begin]);
+  }
+  std::string text = "; to leave it out: --ignore";
+  for (const greybox::SampleRange& span : spans) text += " " + span_words(data, span);
+  return text;
+}
+
+void note_faults(const greybox::Dataset& data, std::vector<std::string>& notes) {
+  const greybox::ReadingFaults faults = greybox::reading_faults(data);
+  if (!faults.leaps.empty()) {
+    std::size_t samples = 0;
+    for (const greybox::SampleRange& span : faults.leaps) samples += span.end - span.begin;
+    notes.push_back(fmt::format("{} of the position {} out of the motion, the first to {}",
+                                samples == 1 ? "a sample" : fmt::format("{} samples", samples),
+                                samples == 1 ? "leaps" : "leap",
+                                config::units::length_words(data.y_m[faults.leaps.front().begin])) +
+                    remedy(data, faults.leaps));
+  }
+  for (const greybox::StuckReading& stuck : faults.stuck) {
+    double time_s = 0.0;
+    for (const greybox::SampleRange& span : stuck.spans) {
+      time_s += data.sample_time_s * static_cast<double>(span.end - span.begin);
+    }
+    notes.push_back(fmt::format("the position stays at exactly {} for {:.3g} s in all while the "
+                                "command goes on: the sensor's range ends there, or a stop or dry "
+                                "friction holds the {}",
+                                config::units::length_words(stuck.value_m), time_s,
+                                config::units::moving_part()) +
+                    remedy(data, stuck.spans));
+  }
+}
+
 }  // namespace
 
 void note_changes(const plant_sim::ModelFile& model, greybox::Dataset& record) {
@@ -71,6 +117,7 @@ std::vector<std::string> notes_of(const greybox::Dataset& data) {
     notes.push_back(fmt::format("{} samples in segments shorter than {:.3g} s are left out",
                                 data.gaps.samples_left_out, greybox::kShortest_s));
   }
+  note_faults(data, notes);
   return notes;
 }
 

@@ -9,7 +9,7 @@
 
 namespace workbench::present {
 
-/// Notes of the record's reader, then gaps and samples left out.
+/// Notes of the record's reader, then gaps and samples left out, then faults of the reading.
 [[nodiscard]] std::vector<std::string> notes_of(const estimator::greybox::Dataset& data);
 
 /// Adds to the record's notes that the model's changes belong to one record, and each change that

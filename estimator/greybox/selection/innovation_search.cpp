@@ -9,6 +9,7 @@
 #include "config/schema/joined.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
 
@@ -30,6 +31,8 @@ constexpr double kInexact = 0.005;
 constexpr double kOnALine = 0.05;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
+/// Fastest speed over the RMS of the motion's.
+constexpr double kFastest = 3.0;
 
 /// Where a line enters is decided before the effects are known that pass it on: the other sites are
 /// tried again.
@@ -275,6 +278,11 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(search.final);
   search.curve_nats = curves.empty() ? 0.0 : curves.front().gain_nats;
   search.jump = likeliest_jump(search.final);
+  // a reading that leaps, or that stays where its range ends, asks for any force
+  const RigScale rig = rig_scale(context.problem.model, context.problem.data);
+  const bool force = !search.final.linear.empty() && search.final.linear.front().force;
+  if (std::abs(search.jump.size) > (force ? rig.force_N : kFastest * rig.speed_mps))
+    search.jump = {};
 }
 
 std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,

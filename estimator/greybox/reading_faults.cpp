@@ -1,0 +1,132 @@
+#include "estimator/greybox/reading_faults.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "estimator/greybox/motion_scale.h"
+
+namespace estimator::greybox {
+namespace {
+
+constexpr double kLeap = 0.1;        ///< of the usual range
+constexpr double kLeapInSteps = 20;  ///< usual largest steps from sample to sample
+constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
+constexpr double kTravel = 0.02;     ///< of the usual range
+constexpr double kResolutions = 3.0;
+constexpr double kCorrelation = 0.4;
+constexpr std::size_t kFewestSamples = 3;
+
+bool counts(const Dataset& record, std::size_t k) {
+  return k >= record.valid.size() || record.valid[k] != 0;
+}
+
+std::vector<double> steps_of(const Dataset& record) {
+  std::vector<double> steps_m;
+  for (const SampleRange& span : segments(record)) {
+    for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
+      steps_m.push_back(std::abs(record.y_m[k + 1] - record.y_m[k]));
+    }
+  }
+  return steps_m;
+}
+
+/// Speed over command, m/s per V, and their correlation between the ends of the range.
+struct Following {
+  double gain = 0.0;
+  double correlation = 0.0;
+};
+
+Following following(const Dataset& record, double least_m, double greatest_m) {
+  double uu = 0.0;
+  double uv = 0.0;
+  double vv = 0.0;
+  double mean_V = 0.0;
+  for (const double u_V : record.u_V) mean_V += u_V / static_cast<double>(record.size());
+  for (const SampleRange& span : segments(record)) {
+    for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
+      const double at_m = record.y_m[k];
+      if (at_m == least_m || at_m == greatest_m) continue;
+      const double v_mps = (record.y_m[k + 1] - at_m) / record.sample_time_s;
+      const double u_V = record.u_V[k] - mean_V;
+      uu += u_V * u_V;
+      uv += u_V * v_mps;
+      vv += v_mps * v_mps;
+    }
+  }
+  if (!(uu > 0.0) || !(vv > 0.0)) return {};
+  return {uv / uu, uv / std::sqrt(uu * vv)};
+}
+
+std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
+  const ValueRange usual_step = usual_range(steps_of(record));
+  const double far_m = std::max(kLeap * range_m, kLeapInSteps * usual_step.high);
+  std::vector<SampleRange> leaps;
+  std::size_t samples = 0;
+  for (const SampleRange& span : segments(record)) {
+    for (std::size_t k = span.begin + 2; k + 2 < span.end; ++k) {
+      std::array<double, 5> near{};
+      std::copy_n(record.y_m.begin() + static_cast<std::ptrdiff_t>(k) - 2, near.size(),
+                  near.begin());
+      std::nth_element(near.begin(), near.begin() + 2, near.end());
+      if (!(std::abs(record.y_m[k] - near[2]) > far_m)) continue;
+      ++samples;
+      if (!leaps.empty() && leaps.back().end == k) {
+        leaps.back().end = k + 1;
+      } else {
+        leaps.push_back({k, k + 1});
+      }
+    }
+  }
+  const bool motion =
+      static_cast<double>(samples) > kMostLeaps * static_cast<double>(record.size());
+  return motion ? std::vector<SampleRange>() : leaps;
+}
+
+StuckReading stuck_at(const Dataset& record, double value_m, double gain_mps_per_V,
+                      double travel_m) {
+  StuckReading stuck{value_m, {}};
+  for (const SampleRange& span : segments(record)) {
+    for (std::size_t k = span.begin; k < span.end;) {
+      const std::size_t begin = k;
+      double travelled_m = 0.0;
+      double farthest_m = 0.0;
+      while (k < span.end && record.y_m[k] == value_m && counts(record, k)) {
+        travelled_m += gain_mps_per_V * record.u_V[k] * record.sample_time_s;
+        farthest_m = std::max(farthest_m, std::abs(travelled_m));
+        ++k;
+      }
+      if (k - begin >= kFewestSamples && farthest_m > travel_m) {
+        stuck.spans.push_back({begin, k});
+      }
+      if (k == begin) ++k;
+    }
+  }
+  return stuck;
+}
+
+}  // namespace
+
+ReadingFaults reading_faults(const Dataset& record) {
+  ReadingFaults faults;
+  if (record.size() < 10) return faults;
+  const ValueRange usual = usual_range(record.y_m);
+  const double range_m = usual.high - usual.low;
+  faults.leaps = leaps_of(record, range_m);
+  const auto [least, greatest] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+  const Following moves = following(record, *least, *greatest);
+  if (std::abs(moves.correlation) < kCorrelation) return faults;
+  double resolution_m = std::numeric_limits<double>::infinity();
+  for (const double step_m : steps_of(record)) {
+    if (step_m > 0.0) resolution_m = std::min(resolution_m, step_m);
+  }
+  const double travel_m = std::max(kTravel * range_m, kResolutions * resolution_m);
+  for (const double value_m : {*least, *greatest}) {
+    StuckReading stuck = stuck_at(record, value_m, moves.gain, travel_m);
+    if (!stuck.spans.empty()) faults.stuck.push_back(std::move(stuck));
+  }
+  return faults;
+}
+
+}  // namespace estimator::greybox

@@ -1,0 +1,78 @@
+// Faults made by hand in records of the independent simulator.
+#include "estimator/greybox/reading_faults.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/truth/case.h"
+#include "tests/truth/rig.h"
+
+namespace estimator::greybox {
+namespace {
+
+Dataset record_of(const std::string& spec) {
+  const truth::Record record = truth::simulate(truth::parse_case(spec, 91));
+  return dataset_of(0.005, record.u_V, record.y_m);
+}
+
+Dataset record() { return record_of("motion=multisine,length_s=20"); }
+
+/// The position that a share of the samples stays below.
+double quantile_m(const Dataset& of, double share) {
+  std::vector<double> sorted = of.y_m;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+TEST(ReadingFaults, AHealthyRecordHasNone) {
+  for (const char* spec : {"motion=multisine,length_s=20", "motion=fast_steps,length_s=20",
+                           "motion=slow_steps,length_s=20", "motion=sine,length_s=20"}) {
+    const ReadingFaults faults = reading_faults(record_of(spec));
+    EXPECT_TRUE(faults.leaps.empty()) << spec;
+    EXPECT_TRUE(faults.stuck.empty()) << spec;
+  }
+}
+
+// A turning point lasts long in steps of a tenth of a millimetre.
+TEST(ReadingFaults, ACoarseEncoderTurnsWithoutBeingStuck) {
+  Dataset coarse = record();
+  for (double& y_m : coarse.y_m) y_m = 1e-4 * std::round(1e4 * y_m);
+  const ReadingFaults faults = reading_faults(coarse);
+  EXPECT_TRUE(faults.leaps.empty());
+  EXPECT_TRUE(faults.stuck.empty());
+}
+
+TEST(ReadingFaults, ASensorsRangeEndsWhereItsReadingStays) {
+  Dataset clipped = record();
+  const double most_m = quantile_m(clipped, 0.9);
+  std::size_t beyond = 0;
+  for (double& y_m : clipped.y_m) {
+    beyond += y_m > most_m ? 1 : 0;
+    y_m = std::min(y_m, most_m);
+  }
+  const ReadingFaults faults = reading_faults(clipped);
+  ASSERT_EQ(faults.stuck.size(), 1U);
+  EXPECT_EQ(faults.stuck.front().value_m, most_m);
+  std::size_t found = 0;
+  for (const SampleRange& span : faults.stuck.front().spans) found += span.end - span.begin;
+  EXPECT_GT(found, 8 * beyond / 10);
+  EXPECT_LE(found, beyond + 10);
+}
+
+TEST(ReadingFaults, ASampleThatLeapsIsFoundWhereItIs) {
+  Dataset leaping = record();
+  leaping.y_m[1500] = 9.99;
+  leaping.y_m[2200] = leaping.y_m[2201] = 0.0;
+  const ReadingFaults faults = reading_faults(leaping);
+  ASSERT_EQ(faults.leaps.size(), 2U);
+  EXPECT_EQ(faults.leaps[0].begin, 1500U);
+  EXPECT_EQ(faults.leaps[0].end, 1501U);
+  EXPECT_EQ(faults.leaps[1].begin, 2200U);
+  EXPECT_EQ(faults.leaps[1].end, 2202U);
+  EXPECT_TRUE(faults.stuck.empty());
+}
+
+}  // namespace
+}  // namespace estimator::greybox
