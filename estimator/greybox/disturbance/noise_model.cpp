@@ -169,6 +169,8 @@ class Likelihood {
 
 }  // namespace
 
+double most_corner_Hz(const FitDataset& data) { return kMostCorner_ratio / data.sample_time_s; }
+
 Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
                          const std::vector<FreeParameter>& parameters, const VectorXd& theta) {
   Linearisations models;
@@ -231,7 +233,7 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   const Bounds bounds{
       Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
             std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
-      Point(std::log(1e5 * unit), std::log(kMostCorner_ratio / data.sample_time_s),
+      Point(std::log(1e5 * unit), std::log(most_corner_Hz(data)),
             std::log(kMostWalk_ratio * walk_m), std::log(data.most_sensor_ratio * floor_m))};
   const auto within = [&](const Point& point) -> Point {
     return point.cwiseMax(bounds.lower).cwiseMin(bounds.upper);

@@ -18,6 +18,9 @@
 
 namespace estimator::greybox::disturbance {
 
+/// Highest corner of the disturbance that is searched for: one that ends there is white.
+[[nodiscard]] double most_corner_Hz(const FitDataset& data);
+
 struct NoiseModel {
   NoiseParameters noise;
   std::vector<SpectralLine> lines;

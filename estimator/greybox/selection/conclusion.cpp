@@ -18,6 +18,12 @@ namespace {
 /// linearised models.
 constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
+/// Error of a simulation over what sensor and disturbance cause, above which they are not all.
+constexpr double kBeyondDisturbance = 2.0;
+/// A great force without memory, its corner at the highest that is searched for, is what a model
+/// lacks from sample to sample.
+constexpr double kWhite = 0.95;
+constexpr double kGreatWhite = 10.0;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow.
 constexpr double kLost = 0.5;
 /// Share of the squared error that a place has to explain to be named.
@@ -205,8 +211,14 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
                           innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
+  // what the noise model explains of the samples has to explain the simulation too
+  const bool beyond = result.rms_after_m > kBeyondDisturbance * result.disturbed_floor_m();
+  const bool white =
+      result.disturbance &&
+      result.disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
+      result.disturbed_floor_m() > kGreatWhite * result.noise_floor_m;
   const bool lost = result.rms_after_m > kLost * motion_rms_m(search.problem.data);
-  const bool physics = innovations.physics_missing() || incredible || lost;
+  const bool physics = innovations.physics_missing() || incredible || beyond || white || lost;
   if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());

@@ -63,11 +63,14 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     }
     conclude(context, search, first, innovations, result);
   };
-  if (context.cancelled() || !innovations.physics_missing() || innovations.load_sets_in()) {
+  const FitSummary held = simulated(search, innovations.final.model.fitted);
+  // what the likelihood prefers is no better model where its simulation is the worse one
+  const bool worse = held.validation_rms_m > (1.0 + kRivals) * first.fitted.validation_rms_m;
+  if (context.cancelled() ||
+      (!worse && (!innovations.physics_missing() || innovations.load_sets_in()))) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;
   }
-  const FitSummary held = simulated(search, innovations.final.model.fitted);
   if (held.validation_rms_m <= kUnexplained * search.problem.data.noise_floor_m) {
     result.search = structure_search_of(search, first, innovations);
     conclude(context, search, result);

@@ -1,4 +1,5 @@
 #include "estimator/greybox/selection/record_checks.h"
+#include "estimator/greybox/motion_scale.h"
 
 #include <algorithm>
 #include <cmath>
@@ -146,11 +147,9 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   if (const double* stroke_m = model.value("stroke_m")) checks.stroke_m = *stroke_m;
   checks.low_m = checks.high_m = data.records.front().y_m.front();
   for (const Dataset& record : data.records) {
-    const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
-    checks.low_m = std::min(checks.low_m, *low);
-    checks.high_m = std::max(checks.high_m, *high);
-    checks.responses.push_back(
-        command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
+    const ValueRange usual = usual_range(record.y_m);  // a dropout is no motion
+    checks.low_m = std::min(checks.low_m, usual.low);
+    checks.high_m = std::max(checks.high_m, usual.high);
   }
   checks.motion = motion_of(model, data.records.front());
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
