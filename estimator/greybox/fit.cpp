@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kDifference = 1e-3;  ///< step of the difference quotients, in search units
 constexpr double kSameSigma = 1.2;
-constexpr double kSlightDamping = 1e-7;
-constexpr double kPolished = 1e-7;
-constexpr int kPolishing = 8;
 
 }  // namespace
 
@@ -70,27 +67,6 @@ double correlation_factor(const Eigen::VectorXd& residual_m, const Eigen::Vector
   return std::min((1.0 + rho) / (1.0 - rho), 100.0);
 }
 
-namespace {
-
-double sigma_of(const FitDataset& data, const Eigen::VectorXd& weights,
-                const Eigen::VectorXd& residual_m) {
-  return std::max(data.noise_floor_m, rms(residual_m, weights)) *
-         std::sqrt(correlation_factor(residual_m, weights));
-}
-
-void take(estimator::nonlinear::Solution solution, const FitDataset& data,
-          const Eigen::VectorXd& weights, FitSummary& fitted) {
-  fitted.theta = std::move(solution.x);
-  fitted.residual_m = std::move(solution.residual);
-  fitted.jacobian = std::move(solution.jacobian);
-  fitted.at_bound = std::move(solution.at_bound);
-  fitted.cost = solution.cost;
-  fitted.training_rms_m = rms(fitted.residual_m, weights);
-  fitted.validation_rms_m = rms(fitted.residual_m, data.validation_mask);
-}
-
-}  // namespace
-
 FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
                const Eigen::VectorXd& weights, const std::vector<FreeParameter>& parameters,
                const Eigen::VectorXd& start, const FitOptions& options) {
@@ -118,16 +94,20 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
     run.residuals(theta, first_m);
     how.start_residual = first_m.col(0);
   }
+  const auto sigma_of = [&](const Eigen::VectorXd& residual_m) {
+    return std::max(data.noise_floor_m, rms(residual_m, weights)) *
+           std::sqrt(correlation_factor(residual_m, weights));
+  };
   FitSummary result;
   result.parameters = parameters;
   result.evaluations = 1;
-  problem.sigma = sigma_of(data, weights, how.start_residual);
+  problem.sigma = sigma_of(how.start_residual);
   for (int pass = 0; pass < options.passes; ++pass) {
     how.final_jacobian = options.final_jacobian && pass + 1 == options.passes;
     estimator::nonlinear::Solution solution = minimize(problem, theta, how);
     result.evaluations += solution.evaluations;
     const double sigma_m = problem.sigma;
-    problem.sigma = sigma_of(data, weights, solution.residual);
+    problem.sigma = sigma_of(solution.residual);
     const bool last = pass + 1 == options.passes || (problem.sigma < kSameSigma * sigma_m &&
                                                      sigma_m < kSameSigma * problem.sigma);
     theta = solution.x;
@@ -140,33 +120,17 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
       solution = minimize(problem, theta, how);
       result.evaluations += solution.evaluations;
     }
-    take(std::move(solution), data, weights, result);
+    result.theta = solution.x;
+    result.residual_m = std::move(solution.residual);
+    result.jacobian = std::move(solution.jacobian);
+    result.at_bound = std::move(solution.at_bound);
+    result.cost = solution.cost;
     result.sigma_m = problem.sigma;
     break;
   }
+  result.training_rms_m = rms(result.residual_m, weights);
+  result.validation_rms_m = rms(result.residual_m, data.validation_mask);
   return result;
-}
-
-FitSummary polish(const plant_sim::ModelFile& model, const FitDataset& data,
-                  const Eigen::VectorXd& weights, FitSummary fitted, const FitOptions& options) {
-  ParallelSimulation run(model, data, fitted.parameters, options.observer_per_s, options.width);
-  estimator::nonlinear::Problem problem =
-      problem_of(data, weights, fitted.parameters, options.logarithm_step);
-  problem.evaluate = run.evaluate();
-  problem.lanes = run.lanes();
-  problem.sigma = fitted.sigma_m;
-  estimator::nonlinear::MinimizeOptions how;
-  how.central = true;
-  how.first_damping = kSlightDamping;
-  how.cost_tolerance = kPolished;
-  how.max_iterations = kPolishing;
-  how.cancel = options.cancel;
-  how.start_residual = fitted.residual_m;
-  estimator::nonlinear::Solution solution = minimize(problem, fitted.theta, how);
-  fitted.evaluations += solution.evaluations;
-  take(std::move(solution), data, weights, fitted);
-  fitted.sigma_m = sigma_of(data, weights, fitted.residual_m);
-  return fitted;
 }
 
 Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,

@@ -68,13 +68,6 @@ struct FitSummary {
                              const std::vector<FreeParameter>& parameters,
                              const Eigen::VectorXd& start, const FitOptions& options = {});
 
-/// The same fit continued with central differences and next to no damping. Forward differences are
-/// off by their step times the curvature, which passes for information wherever parameters are
-/// nearly collinear: the fit stops early there, and its standard errors are too small.
-[[nodiscard]] FitSummary polish(const plant_sim::ModelFile& model, const FitDataset& data,
-                                const Eigen::VectorXd& weights, FitSummary fitted,
-                                const FitOptions& options = {});
-
 /// Standard error of each theta, valid for coloured residuals; NaN at a bound, infinite where
 /// neither record nor prior determines it. `weights` as in the fit.
 [[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
