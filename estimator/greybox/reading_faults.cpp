@@ -32,31 +32,53 @@ std::vector<double> steps_of(const Dataset& record) {
   return steps_m;
 }
 
-/// Speed over command, m/s per V, and their correlation between the ends of the range.
+/// Speed = offset + gain * command, and their correlation, between the ends of the range.
 struct Following {
-  double gain = 0.0;
+  double gain = 0.0;        ///< m/s per V
+  double offset_mps = 0.0;  ///< a null that the loop holds leaves a command at rest
   double correlation = 0.0;
 };
 
 Following following(const Dataset& record, double least_m, double greatest_m) {
+  double n = 0.0;
+  double u = 0.0;
+  double v = 0.0;
   double uu = 0.0;
   double uv = 0.0;
   double vv = 0.0;
-  double mean_V = 0.0;
-  for (const double u_V : record.u_V) mean_V += u_V / static_cast<double>(record.size());
   for (const SampleRange& span : segments(record)) {
     for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
       const double at_m = record.y_m[k];
-      if (at_m == least_m || at_m == greatest_m) continue;
+      if (at_m <= least_m || at_m >= greatest_m || !counts(record, k)) continue;
       const double v_mps = (record.y_m[k + 1] - at_m) / record.sample_time_s;
-      const double u_V = record.u_V[k] - mean_V;
-      uu += u_V * u_V;
-      uv += u_V * v_mps;
+      n += 1.0;
+      u += record.u_V[k];
+      v += v_mps;
+      uu += record.u_V[k] * record.u_V[k];
+      uv += record.u_V[k] * v_mps;
       vv += v_mps * v_mps;
     }
   }
-  if (!(uu > 0.0) || !(vv > 0.0)) return {};
-  return {uv / uu, uv / std::sqrt(uu * vv)};
+  const double spread_u = uu - u * u / n;
+  const double spread_v = vv - v * v / n;
+  const double both = uv - u * v / n;
+  if (!(spread_u > 0.0) || !(spread_v > 0.0)) return {};
+  const double gain = both / spread_u;
+  return {gain, (v - gain * u) / n, both / std::sqrt(spread_u * spread_v)};
+}
+
+/// The least and the greatest position that counts and does not leap.
+ValueRange ends_of(const Dataset& record, const std::vector<SampleRange>& leaps) {
+  ValueRange ends{std::numeric_limits<double>::infinity(),
+                  -std::numeric_limits<double>::infinity()};
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    while (next < leaps.size() && k >= leaps[next].end) ++next;
+    if (!counts(record, k) || (next < leaps.size() && k >= leaps[next].begin)) continue;
+    ends.low = std::min(ends.low, record.y_m[k]);
+    ends.high = std::max(ends.high, record.y_m[k]);
+  }
+  return ends;
 }
 
 std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
@@ -70,7 +92,7 @@ std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
       std::copy_n(record.y_m.begin() + static_cast<std::ptrdiff_t>(k) - 2, near.size(),
                   near.begin());
       std::nth_element(near.begin(), near.begin() + 2, near.end());
-      if (!(std::abs(record.y_m[k] - near[2]) > far_m)) continue;
+      if (!counts(record, k) || !(std::abs(record.y_m[k] - near[2]) > far_m)) continue;
       ++samples;
       if (!leaps.empty() && leaps.back().end == k) {
         leaps.back().end = k + 1;
@@ -84,7 +106,7 @@ std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
   return motion ? std::vector<SampleRange>() : leaps;
 }
 
-StuckReading stuck_at(const Dataset& record, double value_m, double gain_mps_per_V,
+StuckReading stuck_at(const Dataset& record, double value_m, const Following& moves,
                       double travel_m) {
   StuckReading stuck{value_m, {}};
   for (const SampleRange& span : segments(record)) {
@@ -93,7 +115,7 @@ StuckReading stuck_at(const Dataset& record, double value_m, double gain_mps_per
       double travelled_m = 0.0;
       double farthest_m = 0.0;
       while (k < span.end && record.y_m[k] == value_m && counts(record, k)) {
-        travelled_m += gain_mps_per_V * record.u_V[k] * record.sample_time_s;
+        travelled_m += (moves.offset_mps + moves.gain * record.u_V[k]) * record.sample_time_s;
         farthest_m = std::max(farthest_m, std::abs(travelled_m));
         ++k;
       }
@@ -114,16 +136,16 @@ ReadingFaults reading_faults(const Dataset& record) {
   const ValueRange usual = usual_range(record.y_m);
   const double range_m = usual.high - usual.low;
   faults.leaps = leaps_of(record, range_m);
-  const auto [least, greatest] = std::minmax_element(record.y_m.begin(), record.y_m.end());
-  const Following moves = following(record, *least, *greatest);
+  const ValueRange ends = ends_of(record, faults.leaps);
+  const Following moves = following(record, ends.low, ends.high);
   if (std::abs(moves.correlation) < kCorrelation) return faults;
   double resolution_m = std::numeric_limits<double>::infinity();
   for (const double step_m : steps_of(record)) {
     if (step_m > 0.0) resolution_m = std::min(resolution_m, step_m);
   }
   const double travel_m = std::max(kTravel * range_m, kResolutions * resolution_m);
-  for (const double value_m : {*least, *greatest}) {
-    StuckReading stuck = stuck_at(record, value_m, moves.gain, travel_m);
+  for (const double value_m : {ends.low, ends.high}) {
+    StuckReading stuck = stuck_at(record, value_m, moves, travel_m);
     if (!stuck.spans.empty()) faults.stuck.push_back(std::move(stuck));
   }
   return faults;

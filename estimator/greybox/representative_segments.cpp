@@ -73,6 +73,7 @@ FitDataset representative_segments(const FitDataset& whole) {
   result.least_floor_m = whole.least_floor_m;
   result.most_sensor_ratio = whole.most_sensor_ratio;
   result.sample_time_s = whole.sample_time_s;
+  result.command_is_interpolated = whole.command_is_interpolated;
   std::vector<double> training;
   std::vector<double> validation;
   for (std::size_t r = 0; r < whole.records.size(); ++r) {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/reading_faults.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::present {
 
@@ -44,16 +46,17 @@ std::string misfit(const plant_sim::ModelFile& model, const plant_sim::Change& c
                      config::units::length_words(*most_m));
 }
 
-/// "3.198:3.202", for --ignore.
+/// "RECORD@3.198:3.202", for --ignore.
 std::string span_words(const greybox::Dataset& data, const greybox::SampleRange& span) {
   const double half_s = 0.4 * data.sample_time_s;
-  return fmt::format("{:.9g}:{:.9g}", data.t_s[span.begin] - half_s,
-                     data.t_s[span.end - 1] + half_s);
+  return shell_word(fmt::format("{}@{:.9g}:{:.9g}",
+                                std::filesystem::path(data.name).filename().string(),
+                                data.t_s[span.begin] - half_s, data.t_s[span.end - 1] + half_s));
 }
 
 constexpr std::size_t kMostListed = 6;
 
-/// " (--ignore 3.2:3.21 7:7.4)", or where the first is.
+/// "; to leave it out: --ignore ...", or where the first is.
 std::string remedy(const greybox::Dataset& data, const std::vector<greybox::SampleRange>& spans) {
   if (spans.size() > kMostListed) {
     return fmt::format("; {} places, the first at {:.6g} s: mend the record", spans.size(),

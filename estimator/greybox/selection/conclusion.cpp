@@ -209,17 +209,18 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.repetition = repeated_motion(search.problem.data, result.search.final.fitted.residual_m);
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
+  if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
                           innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
   // what the noise model explains of the samples has to explain the simulation too
-  const bool beyond = result.rms_after_m > kBeyondDisturbance * result.disturbed_floor_m();
+  const bool beyond =
+      !context.cancelled() && result.rms_after_m > kBeyondDisturbance * result.disturbed_floor_m();
   const bool white =
       result.disturbance &&
       result.disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
       result.disturbed_floor_m() > kGreatWhite * result.noise_floor_m;
   const bool lost = result.rms_after_m > kLost * motion_rms_m(search.problem.data);
   const bool physics = innovations.physics_missing() || incredible || beyond || white || lost;
-  if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;

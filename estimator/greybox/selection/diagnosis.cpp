@@ -19,6 +19,9 @@ namespace {
 
 /// The fitted model's error over the noise from which on the record itself is looked at.
 constexpr double kFarFromFloor = 10.0;
+/// Rise of a simulation's held-out error that a disturbance, of which a record has few periods,
+/// does not cause by chance.
+constexpr double kClearlyWorse = 0.25;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
 
@@ -37,7 +40,7 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
                                   ? innovations.before.model.fitted
                                   : added_first->before.fitted;
   const double without_m = simulated(search, without).validation_rms_m;
-  if (with_m < (1.0 + kRivals) * without_m) return;
+  if (with_m < (1.0 + kClearlyWorse) * without_m) return;
   InnovationSearch plain;
   plain.before = innovations.before;
   plain.final = std::move(innovations.before);
@@ -65,7 +68,8 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   };
   const FitSummary held = simulated(search, innovations.final.model.fitted);
   // what the likelihood prefers is no better model where its simulation is the worse one
-  const bool worse = held.validation_rms_m > (1.0 + kRivals) * first.fitted.validation_rms_m;
+  const bool worse =
+      !(held.validation_rms_m <= (1.0 + kClearlyWorse) * first.fitted.validation_rms_m);
   if (context.cancelled() ||
       (!worse && (!innovations.physics_missing() || innovations.load_sets_in()))) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();

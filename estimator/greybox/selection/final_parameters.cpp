@@ -14,17 +14,17 @@ namespace {
 
 /// `errors` are those of the search values by the fit's own residual. The scatter between halves of
 /// the record and the error of the integration step are added.
-void report_parameters(const SearchContext& context, Eigen::VectorXd errors,
+void report_parameters(const SearchContext& context, const Eigen::VectorXd& errors,
                        const Eigen::VectorXd& weights, double observer_per_s, Diagnosis& result) {
   const StepError step = step_error(context, result.final, weights, observer_per_s);
   result.step_error_m = step.rms_m;
-  errors = errors.cwiseProduct(split_scatter(context, result.final, weights, observer_per_s));
-  errors = (errors.array().square() + step.shift.array().square()).sqrt().matrix();
+  const Eigen::VectorXd scatter = split_scatter(context, result.final, weights, observer_per_s);
   for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const FreeParameter& p = result.final.parameters[i];
     const bool at_bound = result.final.at_bound[i] != 0;
-    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
+    const double whole = std::hypot(errors[k], scatter[k], step.shift[k]);
+    const double error = at_bound ? std::nan("") : whole * p.slope(result.final.theta[k]);
     ParameterValue value{p.name, p.to_physical(result.final.theta[k]), error, at_bound};
     if (std::isfinite(p.prior_sd) && p.prior_sd > 0.0) {
       value.prior_sds = (result.final.theta[k] - p.prior_mean) / p.prior_sd;

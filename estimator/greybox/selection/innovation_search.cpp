@@ -42,7 +42,9 @@ void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
       if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
       disturbance::NoiseModel noise = stage.noise;
       noise.lines[i].site = site;
-      noise.waves.clear();
+      if (i < noise.waves.size()) {
+        noise.waves[i].assign(noise.waves[i].size(), Eigen::Vector2d::Zero());
+      }
       InnovationStage other = settled(plain, stage.model, noise, 1, wide(plain.options.threads));
       if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
     }
@@ -204,8 +206,10 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
 SearchContext without_holdouts(SearchContext context) {
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
+    const bool interpolated = context.problem.data.command_is_interpolated;
     records.resize(context.problem.data.fitted_records);
     context.problem.data = fit_dataset(std::move(records), {});
+    context.problem.data.command_is_interpolated = interpolated;
     assume_noise_floor(context.problem.data);
   }
   return context;

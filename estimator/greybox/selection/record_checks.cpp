@@ -150,6 +150,8 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
     const ValueRange usual = usual_range(record.y_m);  // a dropout is no motion
     checks.low_m = std::min(checks.low_m, usual.low);
     checks.high_m = std::max(checks.high_m, usual.high);
+    checks.responses.push_back(
+        command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
   }
   checks.motion = motion_of(model, data.records.front());
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),

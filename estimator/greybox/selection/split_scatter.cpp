@@ -44,14 +44,17 @@ VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
     halves[i] = fit(problem.model, problem.data, half, fitted.parameters, fitted.theta, options);
     errors[i] = std_errors(problem.data, half, halves[i]);
   });
-  VectorXd factors = VectorXd::Ones(fitted.theta.size());
-  if (context.cancelled()) return factors;
-  for (Index i = 0; i < factors.size(); ++i) {
+  VectorXd scatter = VectorXd::Zero(fitted.theta.size());
+  if (context.cancelled()) return scatter;
+  for (Index i = 0; i < scatter.size(); ++i) {
     const double apart = std::abs(halves[0].theta[i] - halves[1].theta[i]);
-    const double ratio = apart / std::hypot(errors[0][i], errors[1][i]);
-    if (ratio > kChance) factors[i] = ratio;
+    double expected = 0.0;  // a half that ends at a bound has no error
+    for (const VectorXd& error : errors) {
+      if (std::isfinite(error[i])) expected = std::hypot(expected, error[i]);
+    }
+    if (expected > 0.0 && apart > kChance * expected) scatter[i] = 0.5 * apart;
   }
-  return factors;
+  return scatter;
 }
 
 }  // namespace estimator::greybox::selection

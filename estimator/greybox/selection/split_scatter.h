@@ -8,9 +8,8 @@
 
 namespace estimator::greybox::selection {
 
-/// Factor of each parameter's standard error: the distance of its two values over that which their
-/// own errors let expect, where that is more than twice; otherwise 1. `weights`: samples of the
-/// fit.
+/// Half the distance of each theta's two values where that is more than twice what their own errors
+/// let expect; otherwise 0. `weights`: samples of the fit.
 [[nodiscard]] Eigen::VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
                                             const Eigen::VectorXd& weights, double observer_per_s);
 

@@ -36,7 +36,11 @@ StepError step_error(const SearchContext& context, const FitSummary& fitted,
   const VectorXd change_m = residuals(finer, data, fitted, observer_per_s) -
                             residuals(context.problem.model, data, fitted, observer_per_s);
   if (!change_m.allFinite()) return result;
-  result.rms_m = rms(change_m, weights);
+  FitDataset plain = data;  // a predictor corrects most of the change
+  for (Dataset& record : plain.records) record.innovations.reset();
+  result.rms_m = rms(residuals(finer, plain, fitted, observer_per_s) -
+                         residuals(context.problem.model, plain, fitted, observer_per_s),
+                     weights);
   // J shift = change, beside the priors
   const Index samples = change_m.size();
   MatrixXd left = MatrixXd::Zero(samples + count, count);

@@ -61,6 +61,28 @@ TEST(ReadingFaults, ASensorsRangeEndsWhereItsReadingStays) {
   EXPECT_LE(found, beyond + 10);
 }
 
+TEST(ReadingFaults, ASpikeBeyondItDoesNotHideAnEnd) {
+  Dataset clipped = record();
+  const double most_m = quantile_m(clipped, 0.9);
+  for (double& y_m : clipped.y_m) y_m = std::min(y_m, most_m);
+  clipped.y_m[1500] = 9.99;
+  const ReadingFaults faults = reading_faults(clipped);
+  EXPECT_EQ(faults.leaps.size(), 1U);
+  ASSERT_EQ(faults.stuck.size(), 1U);
+  EXPECT_EQ(faults.stuck.front().value_m, most_m);
+}
+
+// 1 V holds the rod at its greatest reading, in steps of a micrometre, for three seconds.
+TEST(ReadingFaults, ANullThatTheLoopHoldsIsNoMotion) {
+  Dataset held = record();
+  const double most_m = 1e-6 * std::ceil(1e6 * quantile_m(held, 1.0));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    held.y_m[k] = k < 600 ? most_m : 1e-6 * std::round(1e6 * held.y_m[k]);
+    held.u_V[k] = k < 600 ? 1.0 : held.u_V[k] + 1.0;
+  }
+  EXPECT_TRUE(reading_faults(held).stuck.empty());
+}
+
 TEST(ReadingFaults, ASampleThatLeapsIsFoundWhereItIs) {
   Dataset leaping = record();
   leaping.y_m[1500] = 9.99;
