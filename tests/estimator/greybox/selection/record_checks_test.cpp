@@ -24,7 +24,10 @@ RecordChecks checked(Dataset data) {
 TEST(RecordChecks, ATurnedCommandIsNoticed) {
   Dataset turned = record();
   for (double& u_V : turned.u_V) u_V = -u_V;
-  EXPECT_TRUE(checked(turned).turned_sign());
+  const RecordChecks checks = checked(turned);
+  EXPECT_TRUE(checks.turned_sign());
+  ASSERT_EQ(checks.responses.size(), 1U);
+  EXPECT_TRUE(checks.responses.front().against_command());
   EXPECT_FALSE(checked(record()).turned_sign());
 }
 
