@@ -1,8 +1,8 @@
 // Kalman gains that turn a simulation into a one-step predictor whose residual is white where the
 // process is disturbed as its noise model says (disturbance/kalman_gains.h computes them).
 //
-//   e(k) = y(k) - yl(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F
-//   e)
+//   e(k) = y(k) - yl(k) - yh(k),   r(k) = scale(k) e(k)
+//   x(k) += K(k) e(k),             F(k+1) = decay (F(k) + K_F e)
 //
 // yl  what spectral lines known so far move the reading by: the gains were computed without them
 // x  states of the plant, F  process disturbance (a force, or a speed where the plant has no
