@@ -20,7 +20,13 @@ constexpr std::chrono::milliseconds kRetryAccept{100};
 void HttpNetwork::accept() {
   auto self = shared_from_this();
   listening.async_wait(asio::posix::stream_descriptor::wait_read, [self](error_code error) {
-    if (!error) self->take_waiting();
+    if (error) return;
+    try {
+      self->take_waiting();
+    } catch (...) {  // one connection less; run() says why
+      self->accept();
+      throw;
+    }
   });
 }
 
@@ -58,13 +64,13 @@ void HttpNetwork::take_waiting() {
 }
 
 void HttpNetwork::beat() {
-  static const auto text = std::make_shared<const std::string>(event_text("beat", ""));
-  publish(~0U, text);
   heartbeat.expires_after(kHeartbeat);
   auto self = shared_from_this();
   heartbeat.async_wait([self](error_code error) {
     if (!error) self->beat();
   });
+  static const auto text = std::make_shared<const std::string>(event_text("beat", ""));
+  publish(~0U, text);  // last: an exception ends this beat alone
 }
 
 void HttpNetwork::publish(unsigned topic, const std::shared_ptr<const std::string>& event) {
