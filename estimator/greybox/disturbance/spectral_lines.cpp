@@ -27,6 +27,7 @@ constexpr std::size_t kStrongest = 2;
 constexpr std::size_t kNeighbourhood = 40;
 /// Turns over the record below which a line is a drift.
 constexpr double kFewestTurns = 8.0;
+constexpr int kHalvings = 5;  ///< of the step of a line's frequency, from half a bin on
 
 StateVector input_of(const Linearisation& model, LineSite site, std::size_t k) {
   if (site == LineSite::supply) return model.from_supply[k];
@@ -218,6 +219,24 @@ std::vector<SpectralLine> promising_lines(const Linearisation& model, const Data
     }
   }
   return lines;
+}
+
+TunedLine tuned(SpectralLine line, double bin_Hz,
+                const std::function<double(const SpectralLine&)>& gain_of) {
+  TunedLine best{line, gain_of(line)};
+  double step_Hz = 0.5 * bin_Hz;
+  for (int i = 0; i < kHalvings; ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      SpectralLine moved = best.line;
+      moved.frequency_Hz += sign * step_Hz;
+      const double gain = gain_of(moved);
+      if (!(gain > best.gain)) continue;
+      best = {moved, gain};
+      break;
+    }
+    step_Hz *= 0.5;
+  }
+  return best;
 }
 
 }  // namespace estimator::greybox::disturbance

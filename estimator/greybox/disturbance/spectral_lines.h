@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "estimator/greybox/disturbance/linearisation.h"
@@ -61,5 +62,13 @@ struct LineAmplitude {
                                                         const Dataset& record,
                                                         const InnovationGains& gains,
                                                         const Eigen::VectorXd& innovations);
+
+struct TunedLine {
+  SpectralLine line;
+  double gain = 0.0;
+};
+/// The line moved by less than a bin to where it gains most, to a thirtieth of a bin.
+[[nodiscard]] TunedLine tuned(SpectralLine line, double bin_Hz,
+                              const std::function<double(const SpectralLine&)>& gain_of);
 
 }  // namespace estimator::greybox::disturbance

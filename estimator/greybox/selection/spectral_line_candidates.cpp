@@ -82,20 +82,10 @@ std::vector<ScoredLine> line_candidates(const SearchContext& plain, const Innova
   std::vector<ScoredLine> scored(promising.size());
   const double bin_Hz = 1.0 / (longest.sample_time_s * static_cast<double>(size));
   in_parallel(promising.size(), stage.context.options.threads, [&](std::size_t i) {
-    SpectralLine line = promising[i];
-    double best = line_gain_nats(stage, projection, line, record, at);
-    for (double step_Hz = 0.5 * bin_Hz; step_Hz > 0.02 * bin_Hz; step_Hz *= 0.5) {
-      for (const double sign : {-1.0, 1.0}) {
-        SpectralLine moved = line;
-        moved.frequency_Hz += sign * step_Hz;
-        const double gain = line_gain_nats(stage, projection, moved, record, at);
-        if (gain > best) {
-          best = gain;
-          line = moved;
-          break;
-        }
-      }
-    }
+    const auto [line, best] =
+        disturbance::tuned(promising[i], bin_Hz, [&](const SpectralLine& one) {
+          return line_gain_nats(stage, projection, one, record, at);
+        });
     const bool disturbs =
         best > kPerParameter_nats && !follows_motion(stage, record, motion_m, innovations, line);
     scored[i] = {line, disturbs ? best : 0.0};

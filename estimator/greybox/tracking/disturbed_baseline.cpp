@@ -179,18 +179,9 @@ class Learning {
     std::vector<double> gained(lines.size(), 0.0);
     const double bin_Hz = 1.0 / (record.sample_time_s * static_cast<double>(size));
     in_parallel(lines.size(), threads_, [&](std::size_t i) {
-      gained[i] = gain_nats(lines[i]);
-      for (double step_Hz = 0.5 * bin_Hz; step_Hz > 0.02 * bin_Hz; step_Hz *= 0.5) {
-        for (const double sign : {-1.0, 1.0}) {
-          SpectralLine moved = lines[i];
-          moved.frequency_Hz += sign * step_Hz;
-          const double gain = gain_nats(moved);
-          if (gain <= gained[i]) continue;
-          gained[i] = gain;
-          lines[i] = moved;
-          break;
-        }
-      }
+      const disturbance::TunedLine best = disturbance::tuned(lines[i], bin_Hz, gain_nats);
+      lines[i] = best.line;
+      gained[i] = best.gain;
     });
     const auto best = std::max_element(gained.begin(), gained.end());
     if (best == gained.end() || !(*best > kLineGain_nats)) return std::nullopt;
