@@ -98,7 +98,7 @@ ParameterValues values_in(const Json& body) {
 TriggerSettings trigger_in(const Json& body) {
   TriggerSettings settings;
   const auto one_of = [&](const char* key, std::initializer_list<const char*> allowed) {
-    const std::string text = text_in(body, key);
+    std::string text = text_in(body, key);
     for (const char* const one : allowed) {
       if (text == one) return text;
     }

@@ -123,7 +123,7 @@ std::string SessionFolder::path_of(const std::string& name) const {
 }
 
 std::string SessionFolder::existing(const std::string& name) const {
-  const std::string path = path_of(name);
+  std::string path = path_of(name);
   std::error_code ignored;
   if (!fs::is_regular_file(fs::symlink_status(path, ignored))) {
     throw UsageError(name + ": is no file of the session's folder");
@@ -137,7 +137,7 @@ std::string SessionFolder::fresh_name(const std::string& name) const {
     const std::string end =
         (number > 1 ? "-" + std::to_string(number) : "") + wanted.extension().string();
     const std::size_t room = kLongestName - std::min(kLongestName, end.size());
-    const std::string one = cut(wanted.stem().string(), room) + end;
+    std::string one = cut(wanted.stem().string(), room) + end;
     std::error_code ignored;
     if (fs::symlink_status(path_of(one), ignored).type() == fs::file_type::not_found) return one;
   }

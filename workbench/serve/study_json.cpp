@@ -1,5 +1,7 @@
 // A study as the page takes it: words and figures as the commands write them, curves in the units
 // that read well.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -309,7 +311,7 @@ std::string Study::laws() const {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const laws::Law& law = all[i];
     const auto label = [](const std::string& name, const std::string& unit) {
-      return present::json_string(name + ", " + unit);
+      return present::json_string(fmt::format("{}, {}", name, unit));
     };
     json +=
         std::string(i == 0 ? "" : ",") + R"({"title":)" + present::json_string(law.title) +
