@@ -32,7 +32,7 @@ struct TextLine {
   std::size_t offset = 0;
 };
 
-/// What is allowed where a number has two readings.
+/// The spellings allowed where a number has two readings.
 inline constexpr const char* kOneReading =
     "numbers without separators of thousands, or one decimal sign in all of a column's numbers";
 

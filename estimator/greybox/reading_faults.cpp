@@ -10,10 +10,10 @@
 namespace estimator::greybox {
 namespace {
 
-constexpr double kLeap = 0.1;        ///< of the usual range
+constexpr double kLeap = 0.1;        ///< least leap over the usual range
 constexpr double kLeapInSteps = 20;  ///< usual largest steps from sample to sample
 constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
-constexpr double kTravel = 0.02;     ///< of the usual range
+constexpr double kTravel = 0.02;     ///< least travel over the usual range
 constexpr double kResolutions = 3.0;
 constexpr double kCorrelation = 0.4;
 constexpr std::size_t kFewestSamples = 3;

@@ -1,9 +1,5 @@
 #include "workbench/serve/site.h"
 
-#include <algorithm>
-#include <chrono>
-#include <iostream>
-
 #include "config/schema/error.h"
 #include "workbench/control/order.h"
 #include "workbench/serve/page_files.h"
@@ -21,7 +17,6 @@ constexpr std::string_view kFiles = "/files/";
 constexpr std::string_view kUploads = "/api/upload";
 constexpr std::string_view kLogin = "/api/login";
 constexpr std::size_t kMostStudyWork = 64;
-constexpr std::chrono::milliseconds kProgressPeriod{100};
 
 HttpResponse json_response(const Json& json, int status = 200) {
   return {.status = status,
@@ -316,15 +311,6 @@ Site::Json Site::begin_diagnosis(const Json& body) {
   return {{"ok", true}};
 }
 
-Jobs::Progress Site::progress() {
-  using Clock = std::chrono::steady_clock;
-  return [this, told = Clock::time_point{}](const std::string& text, int done, int of) mutable {
-    if (Clock::now() - told < kProgressPeriod) return;
-    told = Clock::now();
-    publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
-  };
-}
-
 void Site::finish_job(JobResult result, const std::string& parent) {
   study_lane_.post([this, result = std::move(result), parent] {
     last_result_ = result.summary;
@@ -339,65 +325,6 @@ void Site::finish_job(JobResult result, const std::string& parent) {
     }
     if (!error.empty()) last_result_ = {{"kind", "error"}, {"words", error}};
     publish_state();
-  });
-}
-
-Site::Json Site::whole_state() {
-  Json state = study_.state();
-  state["folder"] = std::filesystem::absolute(folder_.folder()).lexically_normal().string();
-  state["running"] = jobs_.running();
-  state["result"] = last_result_;
-  state["change"] = gate_.change_secret();
-  state["orders"] = options_.allow_orders;
-  return state;
-}
-
-void Site::publish_state() {
-  try {
-    Json state = whole_state();
-    state.erase("change");
-    publish(kWorkbenchTopic, "state", state);
-    watch_model();
-  } catch (const std::exception& error) {
-    // Whatever was done is done: a page learns of it with the next event.
-    std::cerr << "spoolwatch serve: the state is not shown: " << error.what() << '\n';
-  }
-}
-
-void Site::watch_model() {
-  const std::string& model = study_.live_model();
-  if (model == live_model_) return;
-  live_model_ = model;
-  live_.watch_model(folder_.path_of(model));
-}
-
-void Site::publish(unsigned topic, const char* name, const Json& data) {
-  if (HttpServer* const server = server_) {
-    server->publish(topic, event_text(name, data.dump(-1, ' ', false,
-                                                      nlohmann::json::error_handler_t::replace)));
-  }
-}
-
-void Site::on_stream_open(StreamId stream, unsigned topics) {
-  if ((topics & kLiveTopic) != 0) live_.open(stream);
-}
-
-void Site::on_stream_closed(StreamId stream, unsigned topics) {
-  if ((topics & kLiveTopic) != 0) live_.close(stream);
-}
-
-void Site::poll_control() {
-  if (control_lane_.waiting() > 0) return;
-  control_lane_.post([this] {
-    Json out;
-    try {
-      out = control::ask_daemon(options_.control_socket,
-                                {{protocol::key::kCommand, protocol::kAlarms}});
-      out["control"] = "";
-    } catch (const std::exception& error) {
-      out["control"] = error.what();
-    }
-    publish(kLiveTopic, "alarms", out);
   });
 }
 

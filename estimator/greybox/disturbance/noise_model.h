@@ -43,8 +43,8 @@ struct InnovationData {
 [[nodiscard]] InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
                                              const NoiseModel& noise);
 
-/// Adds to the waves of `noise`, from which the innovations of `data` come, what these still show
-/// of its lines.
+/// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must
+/// come from `noise`.
 void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
                   const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
                   const Linearisations& models, NoiseModel& noise);

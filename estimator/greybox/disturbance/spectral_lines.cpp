@@ -27,7 +27,7 @@ constexpr std::size_t kStrongest = 2;
 constexpr std::size_t kNeighbourhood = 40;
 /// Turns over the record below which a line is a drift.
 constexpr double kFewestTurns = 8.0;
-constexpr int kHalvings = 5;  ///< of the step of a line's frequency, from half a bin on
+constexpr int kHalvings = 5;  ///< halvings of a line's frequency step, half a bin at first
 
 StateVector input_of(const Linearisation& model, LineSite site, std::size_t k) {
   if (site == LineSite::supply) return model.from_supply[k];

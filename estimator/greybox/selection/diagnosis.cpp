@@ -26,8 +26,8 @@ constexpr double kClearlyWorse = 0.25;
 constexpr double kPeriodsOfDrift = 4.0;
 
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
-/// likelihood gains by them is a matter of the noise, not of the motion. A disturbance that is most
-/// of either error decides between errors that are nearly the same.
+/// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
+/// nearly the same, the disturbance in both decides.
 void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
   if (innovations.final.model.added.empty() || search.cancelled()) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;

@@ -96,7 +96,7 @@ struct Diagnosis {
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it
-  double step_error_m = 0.0;    ///< of its simulation, RMS: what a shorter step changes
+  double step_error_m = 0.0;    ///< RMS by which a shorter step changes its simulation
   double runtime_s = 0.0;
 
   /// `missing` without `possible` and `laws`.

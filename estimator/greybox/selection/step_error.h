@@ -10,7 +10,7 @@
 namespace estimator::greybox::selection {
 
 struct StepError {
-  double rms_m = 0.0;     ///< of the simulation's change
+  double rms_m = 0.0;     ///< RMS of the simulation's change
   Eigen::VectorXd shift;  ///< of each theta
 };
 

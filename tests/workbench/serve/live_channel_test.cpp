@@ -101,18 +101,23 @@ std::vector<double> times_of(const std::vector<Sent>& events) {
   return t_s;
 }
 
+/// The log played as fast as it can be read.
+LiveChannel channel_of(const std::string& log, Inboxes& inboxes) {
+  return LiveChannel(
+      {"file://" + log + "?mode=r&speed=0", "LIVE"},
+      [&](const auto& pages, const char* name, const std::string& json) {
+        inboxes.take(pages, name, json);
+      },
+      [] {});
+}
+
 TEST(LiveChannel, EachPageCatchesUpWithTheLastMinuteByItself) {
   const std::string log =
       (std::filesystem::temp_directory_path() / ("live_channel_" + std::to_string(getpid())))
           .string();
   write_log(log);
   Inboxes inboxes;
-  LiveChannel channel(
-      {"file://" + log + "?mode=r&speed=0", "LIVE"},
-      [&](const auto& pages, const char* name, const std::string& json) {
-        inboxes.take(pages, name, json);
-      },
-      [] {});
+  LiveChannel channel = channel_of(log, inboxes);
   constexpr std::size_t kAll = kSeconds * kRate_Hz;
   constexpr std::size_t kMinute = 60 * kRate_Hz;
   channel.open(1);
@@ -154,12 +159,7 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   const std::string log = (folder / "log").string();
   write_log(log);
   Inboxes inboxes;
-  LiveChannel channel(
-      {"file://" + log + "?mode=r&speed=0", "LIVE"},
-      [&](const auto& pages, const char* name, const std::string& json) {
-        inboxes.take(pages, name, json);
-      },
-      [] {});
+  LiveChannel channel = channel_of(log, inboxes);
   EXPECT_EQ(channel.newest_capture(), nullptr);
   TriggerSettings settings;
   settings.mode = TriggerSettings::Mode::single;

@@ -1,0 +1,66 @@
+// Work in the background: its order, and what an exception ends.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <semaphore>
+#include <stdexcept>
+#include <thread>
+
+#include "workbench/serve/jobs.h"
+#include "workbench/serve/lane.h"
+
+namespace workbench::serve {
+namespace {
+
+TEST(Jobs, AnExceptionBehindAJobEndsNothing) {
+  Jobs jobs;
+  std::binary_semaphore ended(0);
+  const auto fails = [&](JobResult result) {
+    EXPECT_NE(result.error, "");
+    ended.release();
+    throw std::runtime_error("behind the job");
+  };
+  for (int i = 0; i < 2; ++i) {
+    while (jobs.running()) std::this_thread::yield();
+    fit::FitRequest request;
+    request.model = "none.toml";
+    request.records = {"none.csv"};
+    ASSERT_TRUE(jobs.fit(std::move(request), {}, fails));
+    ended.acquire();
+  }
+}
+
+TEST(Lane, AnExceptionEndsItsOwnWorkAlone) {
+  std::binary_semaphore done(0);
+  Lane lane;
+  lane.post([] { throw std::runtime_error("one thing has failed"); });
+  lane.post([] { throw 3; });
+  lane.post([&] { done.release(); });
+  EXPECT_TRUE(done.try_acquire_for(std::chrono::seconds(10)));
+}
+
+TEST(Lane, OnlyTheLatestOfWhatWaitsIsDone) {
+  std::string done;
+  std::atomic<bool> begun{false};
+  std::atomic<bool> go{false};
+  {
+    Lane lane;
+    lane.post([&] {
+      begun = true;
+      while (!go) std::this_thread::yield();
+    });
+    while (!begun) std::this_thread::yield();
+    for (const char name : {'a', 'b', 'c'}) {
+      lane.post_latest([&done, name] { done += name; },
+                       [&done, name] { done += static_cast<char>(name - 'a' + 'A'); });
+    }
+    go = true;
+    std::atomic<bool> last{false};
+    lane.post([&] { last = true; });
+    while (!last) std::this_thread::yield();
+  }
+  EXPECT_EQ(done, "ABc");
+}
+
+}  // namespace
+}  // namespace workbench::serve

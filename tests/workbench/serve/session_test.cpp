@@ -1,0 +1,104 @@
+// What a session keeps: names, files and its state, after refused changes too.
+#include <functional>
+
+#include "config/schema/error.h"
+#include "tests/workbench/serve/study_page.h"
+#include "workbench/serve/study.h"
+
+namespace workbench::serve {
+namespace {
+
+TEST_F(StudyPage, ASessionGoesOnWhereItEnded) {
+  ASSERT_EQ(page.post("ignore", {{"spans", {"3:5"}}}).status, 200);
+  const SessionFolder folder(page.session);
+  Study again(folder);
+  const ordered_json state = again.state();
+  EXPECT_EQ(state["record"], "multisine.csv");
+  EXPECT_EQ(state["model"], "thesis.toml");
+  EXPECT_THAT(state["ignored"], testing::ElementsAre("3:5"));
+  page.put("session.json", "{\"nodes\": [1, {\"model\": 3}], \"record\": []}");
+  EXPECT_EQ(Study(folder).state()["record"], "");
+}
+
+TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {
+  for (const char* const expected :
+       {"thesis-fitted.toml", "thesis-fitted-2.toml", "thesis-fitted-3.toml"}) {
+    ASSERT_EQ(page.post("fit").status, 200);
+    EXPECT_EQ(finished()["trial"], expected);
+    ASSERT_EQ(page.post("accept").status, 200);
+  }
+  ASSERT_EQ(page.post("add", {{"effect", "null_bias"}}).status, 200);
+  EXPECT_EQ(page.state()["trial"], "thesis+null_bias.toml");
+}
+
+TEST(SessionFolder, DerivedNamesDoNotGrow) {
+  EXPECT_EQ(derived_name("rig.toml", "-fitted"), "rig-fitted.toml");
+  EXPECT_EQ(derived_name("rig-fitted.toml", "-fitted"), "rig-fitted.toml");
+  EXPECT_EQ(derived_name("rig-fitted-12.toml", "-diagnosed"), "rig-diagnosed.toml");
+  EXPECT_EQ(derived_name("rig-diagnosed.toml", "+friction"), "rig+friction.toml");
+  EXPECT_EQ(derived_name("rig-2.toml", "-fitted"), "rig-2-fitted.toml");
+  EXPECT_EQ(derived_name("well-fitted-rig.toml", "-fitted"), "well-fitted-rig-fitted.toml");
+}
+
+TEST_F(StudyPage, ANameTooLongIsCutBetweenCharacters) {
+  const SessionFolder folder(page.session);
+  std::string name;
+  for (int i = 0; i < 45; ++i) name += "ä";  // 90 bytes
+  name += "-fitted.toml";
+  const std::string first = folder.fresh_name(name);
+  EXPECT_TRUE(is_plain_name(first)) << first;
+  EXPECT_THAT(first, testing::EndsWith(".toml"));
+  page.put(first, "");
+  const std::string second = folder.fresh_name(name);
+  EXPECT_TRUE(is_plain_name(second)) << second;
+  EXPECT_THAT(second, testing::EndsWith("-2.toml"));
+}
+
+TEST_F(StudyPage, AModelWithTheLongestNameIsFitted) {
+  const std::string longest = std::string(95, 'm') + ".toml";
+  std::filesystem::copy_file(page.session / "thesis.toml", page.session / longest);
+  ASSERT_EQ(page.post("model", {{"name", longest}}).status, 200);
+  ASSERT_EQ(page.post("fit").status, 200);
+  const ordered_json fitted = finished();
+  EXPECT_NE(fitted["trial"], "") << fitted["result"];
+  EXPECT_EQ(fitted["trial"].get<std::string>().size(), 100U);
+}
+
+TEST_F(StudyPage, ARefusedChangeLeavesSessionAndFolder) {
+  const SessionFolder folder(page.session);
+  Study study(folder);
+  study.ignore({"3:5"});
+  const std::string shown = study.state().dump();
+  const std::string files = page.everything();
+  EXPECT_THROW(study.take_trial("none.toml", "thesis.toml", "fitted", "spoolwatch fit"),
+               config::schema::Error);
+  EXPECT_EQ(study.state().dump(), shown);
+  EXPECT_EQ(page.everything(), files);
+
+  // Nothing can be saved.
+  std::filesystem::remove(page.session / "session.json");
+  std::filesystem::create_directory(page.session / "session.json");
+  std::filesystem::create_directory(page.session / "session.json" / "full");
+  const std::string unsaved = study.state().dump();
+  const std::string before = page.everything();
+  for (const auto& change : std::vector<std::function<void()>>{
+           [&] { study.add_effect("friction"); },
+           [&] { study.open_shipped("velocity_servo.toml"); }, [&] { (void)study.write_report(); },
+           [&] { study.ignore({}); }, [&] { study.open_record("multisine.csv"); }}) {
+    EXPECT_THROW(change(), std::exception);
+    EXPECT_EQ(study.state().dump(), unsaved);
+    EXPECT_EQ(page.everything(), before);
+  }
+}
+
+TEST_F(StudyPage, FilesThatAreGoneLeaveTheStateReadable) {
+  std::filesystem::remove(page.session / "multisine.csv");
+  std::filesystem::remove(page.session / "thesis.toml");
+  const ordered_json state = page.state();
+  EXPECT_EQ(state["model"], "thesis.toml");
+  EXPECT_FALSE(state["parameters"].empty());
+  EXPECT_EQ(page.post("fit").status, 422);
+}
+
+}  // namespace
+}  // namespace workbench::serve
