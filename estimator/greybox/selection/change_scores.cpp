@@ -22,11 +22,13 @@ constexpr double kSmall = 0.05;
 /// Share of a column that must remain beside the model's own freedom.
 constexpr double kVisible = 1e-6;
 
-/// Sensitivities of the innovations, in standard deviations, to parameters.
+/// Sensitivities of the innovations, in standard deviations, to parameters, and beneath them those
+/// of the distances from the priors of the model's own.
 struct Columns {
   std::vector<FreeParameter> parameters;
   std::vector<bool> absent;
   MatrixXd values;
+  VectorXd rest;  ///< the innovations, and the distances from the priors
 };
 
 /// Sizes of absent effects by difference quotients.
@@ -50,7 +52,8 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
   VectorXd base = VectorXd::Zero(own + count);
   base.head(own) = fitted.theta;
   const Index samples = fitted.residual_m.size();
-  columns.values.conservativeResize(samples, own + count);
+  columns.values.conservativeResize(Eigen::NoChange, own + count);
+  columns.values.rightCols(count).setZero();
   constexpr Index kBatch = ObserverSimulation::kLanes;
   MatrixXd residuals_m;
   for (Index from = 0; from < count && !context.cancelled(); from += kBatch) {
@@ -59,7 +62,7 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
     for (Index i = 0; i < lanes; ++i) points(own + from + i, i) = kSmall;
     run.residuals(points, residuals_m);
     for (Index i = 0; i < lanes; ++i) {
-      columns.values.col(own + from + i) =
+      columns.values.col(own + from + i).head(samples) =
           (residuals_m.col(i) - fitted.residual_m) / (kSmall * floor_m);
     }
   }
@@ -71,8 +74,19 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
 
 Columns columns_of(const InnovationStage& stage) {
   const FitSummary& fitted = stage.model.fitted;
+  const double floor_m = stage.context.problem.data.noise_floor_m;
+  const Index samples = fitted.residual_m.size();
+  const Index own = fitted.jacobian.cols();
   Columns columns{fitted.parameters, std::vector<bool>(fitted.parameters.size(), false),
-                  fitted.jacobian / stage.context.problem.data.noise_floor_m};
+                  MatrixXd::Zero(samples + own, own), VectorXd::Zero(samples + own)};
+  columns.values.topRows(samples) = fitted.jacobian / floor_m;
+  columns.rest.head(samples) = fitted.residual_m / floor_m;
+  for (Index i = 0; i < own; ++i) {
+    const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
+    if (!std::isfinite(p.prior_sd)) continue;
+    columns.values(samples + i, i) = 1.0 / p.prior_sd;
+    columns.rest[samples + i] = (fitted.theta[i] - p.prior_mean) / p.prior_sd;
+  }
   add_absent_effects(stage, columns);
   return columns;
 }
@@ -97,11 +111,17 @@ class Course {
     own /= norm;
     basis_.conservativeResize(Eigen::NoChange, basis.cols() + 1);
     basis_.rightCols(1) = own;
-    rest_ -= own * own.dot(rest_);
+    const double along = own.dot(rest_);
+    throughout_nats_ = 0.5 * along * along;
+    rest_ -= own * along;
   }
 
+  [[nodiscard]] double throughout_nats() const { return throughout_nats_; }
+
+  /// `course`: one value a sample.
   void score(const VectorXd& course, ChangeScore& score) const {
-    const VectorXd x = column_.cwiseProduct(course);
+    VectorXd x = VectorXd::Zero(column_.size());
+    x.head(course.size()) = column_.head(course.size()).cwiseProduct(course);
     take(rest_.dot(x), x.squaredNorm(), basis_.transpose() * x, score);
   }
 
@@ -140,6 +160,7 @@ class Course {
   const VectorXd& column_;
   MatrixXd basis_;
   VectorXd rest_;
+  double throughout_nats_ = 0.0;
 };
 
 std::vector<Index> step_times(const Dataset& record) {
@@ -174,8 +195,7 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
   const Columns columns = columns_of(stage);
   const auto own = static_cast<Index>(stage.model.fitted.parameters.size());
   const MatrixXd basis = basis_of(columns.values.leftCols(own));
-  VectorXd rest = stage.model.fitted.residual_m / data.noise_floor_m;
-  rest -= basis * (basis.transpose() * rest);
+  const VectorXd rest = columns.rest - basis * (basis.transpose() * columns.rest);
   const Eigen::Map<const VectorXd> t_s(record.t_s.data(), static_cast<Index>(record.size()));
   const double begin_s = record.t_s.front();
   const double length_s = record.t_s.back() - begin_s;
@@ -188,6 +208,7 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     const VectorXd column = columns.values.col(c);
     const Course course(basis, rest, column, columns.absent[i]);
     ChangeScore score{columns.parameters[i], columns.absent[i]};
+    score.throughout_nats = course.throughout_nats();
     ChangeScore step = score;
     const Index at = course.score_steps(grid, step);
     if (at >= 0) {

@@ -14,6 +14,9 @@ namespace {
 constexpr std::size_t kMostChanges = 2;
 /// Gain of a curve over the motion, in those of the best change, from which on no change is sought.
 constexpr double kMotionExplains = 2.0;
+/// Share of what an absent effect gains throughout, from which on its change is more than a by-work
+/// of it, so that both together stand against a curve, which has a constant of its own.
+constexpr double kChangeOfEffect = 0.05;
 /// Range and step, in samples, in which the time of a change is looked for about its fit.
 constexpr double kScanned_s = 1.0;
 constexpr double kScanStep = 4.0;
@@ -167,7 +170,8 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
 bool motion_explains_more(const InnovationStage& stage) {
   double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
   for (const ChangeScore& score : change_scores(stage)) {
-    best_change = std::max(best_change, score.gain_nats);
+    const bool both = score.gain_nats > kChangeOfEffect * score.throughout_nats;
+    best_change = std::max(best_change, score.gain_nats + (both ? score.throughout_nats : 0.0));
   }
   for (const CurveGain& curve : curve_gains(stage)) {
     if (curve.variable != "time" && curve.gain_nats > kMotionExplains * best_change) return true;
