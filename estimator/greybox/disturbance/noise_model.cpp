@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "estimator/greybox/disturbance/batch_newton.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
@@ -24,18 +25,12 @@ constexpr double kMostWalk_ratio = 150.0;
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
-/// The search ends when its steps, factors of e^step, are smaller.
-constexpr double kFirstStep = 1.2;
-constexpr double kLastStep = 0.08;
-constexpr int kMostRounds = 24;
+/// Fall of -2 log L below which a step of the search is its last.
+constexpr double kEnough = 0.02;
 
 /// Logarithms of the disturbance's intensity, its standard deviation times the root of its corner,
 /// of its corner, walk and sensor noise. Above the corner the intensity alone is seen.
-using Point = Eigen::Vector4d;
-
-struct Bounds {
-  Point lower, upper;
-};
+using Point = SearchPoint;
 
 NoiseParameters noise_of(const Point& point) {
   return {std::exp(point[0] - 0.5 * point[1]), std::exp(point[1]), std::exp(point[2]),
@@ -230,7 +225,7 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   // ten thousand times as much
   const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
   const double walk_m = observer * floor_m;
-  const Bounds bounds{
+  const SearchBounds bounds{
       Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
             std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
       Point(std::log(1e5 * unit), std::log(most_corner_Hz(data)),
@@ -246,31 +241,11 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   }
   if (start.noise.sensor_m > 0.0) points.back() = within(point_of(start.noise));
   std::vector<double> costs = likelihood(points);
-  auto least = std::min_element(costs.begin(), costs.end());
-  Point best = points[static_cast<std::size_t>(least - costs.begin())];
-  double best_cost = *least;
-  double step = kFirstStep;
-  Point direction = Point::Zero();
-  for (int round = 0; round < kMostRounds && step > kLastStep; ++round) {
-    points.clear();
-    for (Index i = 0; i < Point::RowsAtCompileTime; ++i) {
-      for (const double sign : {-1.0, 1.0}) {
-        points.push_back(within(best + sign * step * Point::Unit(i) + 0.5 * direction));
-      }
-    }
-    costs = likelihood(points);
-    least = std::min_element(costs.begin(), costs.end());
-    if (*least < best_cost) {
-      const Point next = points[static_cast<std::size_t>(least - costs.begin())];
-      direction = next - best;
-      best = next;
-      best_cost = *least;
-    } else {
-      direction.setZero();
-      step *= 0.5;
-    }
-  }
-  return {{noise_of(best), start.lines, start.waves}, best_cost};
+  const auto least = std::min_element(costs.begin(), costs.end());
+  const Minimum best =
+      minimise([&](const std::vector<Point>& at) { return likelihood(at); },
+               {points[static_cast<std::size_t>(least - costs.begin())], *least}, bounds, kEnough);
+  return {{noise_of(best.at), start.lines, start.waves}, best.value};
 }
 
 }  // namespace estimator::greybox::disturbance

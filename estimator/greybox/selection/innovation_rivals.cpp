@@ -15,6 +15,9 @@ constexpr std::size_t kLargestGroup = 3;
 constexpr std::size_t kFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
+/// The same of one with a noise model of its own, when that and its parameters have converged
+/// together.
+constexpr double kWorthPolishing_nats = 30.0;
 
 ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {
   return subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
@@ -93,12 +96,14 @@ InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& fi
     if ((far && !rival.simulated) || ++tried > kFinalists || group.names.size() == kLargestGroup) {
       continue;
     }
-    const InnovationStage other = settled(plain, *without, rival);
-    const double behind =
-        0.5 * (other.minus_two_log - final.minus_two_log) +
-        kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
-                              static_cast<double>(final.model.fitted.parameters.size()));
-    if (behind < kRivals_nats &&
+    InnovationStage other = settled(plain, *without, rival);
+    const auto behind_nats = [&] { return 0.5 * (penalised(other) - penalised(final)); };
+    if (behind_nats() >= kRivals_nats && behind_nats() < kWorthPolishing_nats) {
+      InnovationStage polished =
+          settled(plain, other.model, other.noise, kMostTurns, wide(plain.options.threads));
+      if (polished.minus_two_log < other.minus_two_log) other = std::move(polished);
+    }
+    if (behind_nats() < kRivals_nats &&
         !leaves_its_range(other.model.fitted, without->model.fitted.parameters.size())) {
       group.names.push_back(name);
       group.explanations.push_back(other.model.fitted);

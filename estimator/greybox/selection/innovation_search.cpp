@@ -26,6 +26,9 @@ constexpr double kParametersOfLine = 3.0;
 /// Share of what a search has explained that may be owed to its models being inexact: a candidate
 /// has to gain more.
 constexpr double kInexact = 0.005;
+/// Lead of the likeliest candidate that another may make up for when its noise model and parameters
+/// have converged together.
+constexpr double kContends_nats = 30.0;
 /// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
 /// one.
 constexpr double kOnALine = 0.05;
@@ -158,11 +161,18 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
     return best;
   };
   std::size_t chosen = likeliest();
-  while (chosen != none) {
-    InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise,
-                                       kMostTurns, wide(plain.options.threads));
-    if (polished.minus_two_log < stages[chosen].minus_two_log) stages[chosen] = std::move(polished);
-    if (!leaves_its_range(stages[chosen].model.fitted, own)) break;
+  if (chosen != none) {
+    const double best_nats = trials[chosen].candidate.gain_nats;
+    in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
+      InnovationCandidate& candidate = trials[i].candidate;
+      if (!candidate.settled || !(candidate.gain_nats > best_nats - kContends_nats)) return;
+      InnovationStage polished =
+          settled(plain, stages[i].model, stages[i].noise, kMostTurns, SimulationWidth{});
+      if (!(polished.minus_two_log < stages[i].minus_two_log)) return;
+      stages[i] = std::move(polished);
+      candidate.gain_nats =
+          0.5 * (stage.minus_two_log - stages[i].minus_two_log) - trials[i].penalty_nats;
+    });
     chosen = likeliest();
   }
   for (std::size_t i = 0; i < trials.size(); ++i) {

@@ -71,14 +71,13 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   const double floor_m = context.problem.data.noise_floor_m;
   std::vector<ScreeningResult> screened =
       screen(context, stage.model, absent_from(context, stage.model));
-  const double own = squares(stage.model.fitted, floor_m);
+  const double before = squares(stage.model.fitted, floor_m) + prior_cost(stage.model.fitted);
   std::erase_if(screened, [&](const ScreeningResult& result) {
     const double ratio = result.expected_ratio;
-    return 0.5 * own * (1.0 - ratio * ratio) < kHopeless_nats;
+    return 0.5 * before * (1.0 - ratio * ratio) < kHopeless_nats;
   });
   screened.resize(std::min(screened.size(), kFitted));
   std::vector<InnovationTrial> trials(screened.size());
-  const double before = own + prior_cost(stage.model.fitted);
   in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
     InnovationTrial& trial = trials[i];
     trial.candidate.effect = screened[i].effect;

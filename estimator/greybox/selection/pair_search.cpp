@@ -76,7 +76,7 @@ void screened(const plant_sim::ModelFile& model, const FitDataset& data,
     run.residuals(points.middleCols(from, lanes), residuals_m);
     for (Index lane = 0; lane < lanes; ++lane) {
       if (!residuals_m.col(lane).allFinite()) continue;
-      const double cost = projection.remaining(residuals_m.col(lane));
+      const double cost = projection.remaining(residuals_m.col(lane), base);
       if (cost >= least) continue;
       least = cost;
       best = from + lane;

@@ -1,9 +1,10 @@
 // Residual that remains when a model's parameters adjust linearly against their priors, and one
 // further signature enters with any strength.
 //
-//   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum (a / sd)^2
+//   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum ((theta + a - mean) / sd)^2
 //
-// a adjustments of the parameters, held by their prior widths about the present values.
+// a adjustments of the parameters from theta, where r is; what a signature spares the parameters of
+// strain counts for it.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -21,12 +22,13 @@ class Projection {
 
   /// With the fitted model's own residual and no signature.
   [[nodiscard]] double cost() const { return cost_; }
-  /// With another residual; its prior is that of the fitted model.
-  [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
-  /// Cost and b with another residual (its prior is that of the fitted model) and a signature, both
-  /// as long as the weights.
+  /// With the residual of the parameters at `theta`, whose first entries are the fitted model's.
+  [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+                                 const Eigen::Ref<const Eigen::VectorXd>& theta) const;
+  /// Cost and b with such a residual and a signature, both as long as the weights.
   [[nodiscard]] std::pair<double, double> with(
       const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+      const Eigen::Ref<const Eigen::VectorXd>& theta,
       const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
   /// The same with two signatures.
   struct Two {
@@ -35,20 +37,31 @@ class Projection {
     double second;
   };
   [[nodiscard]] Two with(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& theta,
                          const Eigen::Ref<const Eigen::VectorXd>& first_m,
                          const Eigen::Ref<const Eigen::VectorXd>& second_m) const;
   /// The signature less the part that the parameters can imitate.
   [[nodiscard]] Eigen::VectorXd beyond(const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
 
  private:
-  [[nodiscard]] double remaining(const Eigen::VectorXd& weighted, const Eigen::VectorXd& onto,
-                                 const Eigen::VectorXd& other,
-                                 const Eigen::VectorXd& other_onto) const;
+  /// A series beside the parameters' distances from their priors, and its part in their space.
+  struct Weighed {
+    Eigen::VectorXd series;
+    Eigen::VectorXd strain;
+    Eigen::VectorXd onto;
+  };
+  [[nodiscard]] Weighed residual(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+                                 const Eigen::Ref<const Eigen::VectorXd>& theta) const;
+  [[nodiscard]] Weighed signature(const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
+  /// Product of what the parameters leave of two.
+  [[nodiscard]] double left(const Weighed& one, const Weighed& other) const;
 
   Eigen::VectorXd weights_;
   Eigen::MatrixXd weighted_jacobian_;  ///< divided by s, counted samples only
   Eigen::MatrixXd jacobian_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
+  Eigen::VectorXd prior_mean_;
+  Eigen::VectorXd per_prior_sd_;  ///< 0: no prior
   double per_sigma_ = 0.0;
   double cost_ = 0.0;
 };

@@ -59,7 +59,7 @@ ScoredStart look(DatasetSimulation& run, const Projection& projection, const Bas
     for (Index lane = 0; lane < lanes; ++lane) {
       if (!residuals_m.col(lane).allFinite()) continue;
       const auto [cost, share] =
-          projection.with(base.residual_m, residuals_m.col(lane) - base.residual_m);
+          projection.with(base.residual_m, base.theta, residuals_m.col(lane) - base.residual_m);
       VectorXd start = points.col(lane);
       // a limit that is not reached has no influence: start where it had some
       const bool is_limit = own.front().scale == ParameterScale::reciprocal;
@@ -103,7 +103,7 @@ std::vector<Wave> waves_at(const SearchContext& context, const FitDataset& data,
       const auto at = static_cast<Index>(2 * i);
       if (!residuals_m.middleCols(at, 2).allFinite()) continue;
       const Projection::Two two =
-          projection.with(base.residual_m, residuals_m.col(at) - base.residual_m,
+          projection.with(base.residual_m, base.theta, residuals_m.col(at) - base.residual_m,
                           residuals_m.col(at + 1) - base.residual_m);
       found.push_back({two.cost, turns[from + i],
                        wave_of(own, points.col(at).tail(static_cast<Index>(own.size())), two.first,
@@ -165,8 +165,9 @@ std::vector<ScoredResonance> resonance_peaks(const SearchContext& context, const
     for (Index lane = 0; lane < points.cols(); ++lane) {
       ScoredResonance one{projection.cost(), tried[static_cast<std::size_t>(lane)], 0.0};
       if (residuals_m.col(lane).allFinite()) {
-        std::tie(one.cost, one.share) = projection.with(
-            stage.fitted.residual_m, residuals_m.col(lane) - stage.fitted.residual_m);
+        std::tie(one.cost, one.share) =
+            projection.with(stage.fitted.residual_m, stage.fitted.theta,
+                            residuals_m.col(lane) - stage.fitted.residual_m);
       }
       scored.push_back(one);
     }

@@ -31,8 +31,8 @@ double line_gain_nats(const InnovationStage& stage, const Projection& projection
   const double size = whole.norm();
   if (!(size > 0.0)) return 0.0;
   whole *= stage.model.fitted.residual_m.norm() / size;
-  const Projection::Two two =
-      projection.with(stage.model.fitted.residual_m, whole.col(0), whole.col(1));
+  const Projection::Two two = projection.with(stage.model.fitted.residual_m,
+                                              stage.model.fitted.theta, whole.col(0), whole.col(1));
   const double sigma = stage.model.fitted.sigma_m / data.noise_floor_m;
   return 0.5 * (projection.cost() - two.cost) * sigma * sigma;
 }

@@ -1,0 +1,103 @@
+#include "estimator/greybox/disturbance/batch_newton.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using Eigen::Index;
+using Matrix = Eigen::Matrix4d;
+
+constexpr Index kSize = SearchPoint::RowsAtCompileTime;
+constexpr int kMostSteps = 12;
+constexpr double kLongestStep = 1.5;
+/// Added to the curvatures, over the greatest of them.
+constexpr double kDampings[] = {0.0, 1e-3, 1e-2, 0.05, 0.2, 1.0, 10.0, 100.0};
+
+struct Quadratic {
+  SearchPoint slope;
+  Matrix curvature;
+};
+
+Quadratic quadratic_at(const BatchFunction& function, const Minimum& centre) {
+  std::vector<SearchPoint> points;
+  for (Index i = 0; i < kSize; ++i) {
+    points.push_back(centre.at + kDifference * SearchPoint::Unit(i));
+    points.push_back(centre.at - kDifference * SearchPoint::Unit(i));
+  }
+  const std::vector<double> beside = function(points);
+  points.clear();
+  for (Index i = 0; i < kSize; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      points.push_back(centre.at + kDifference * (SearchPoint::Unit(i) + SearchPoint::Unit(j)));
+    }
+  }
+  const std::vector<double> corners = function(points);
+  Quadratic result;
+  const auto above = [&](Index i) { return beside[static_cast<std::size_t>(2 * i)]; };
+  const auto below = [&](Index i) { return beside[static_cast<std::size_t>(2 * i + 1)]; };
+  std::size_t next = 0;
+  for (Index i = 0; i < kSize; ++i) {
+    result.slope[i] = (above(i) - below(i)) / (2.0 * kDifference);
+    result.curvature(i, i) =
+        (above(i) - 2.0 * centre.value + below(i)) / (kDifference * kDifference);
+    for (Index j = 0; j < i; ++j) {
+      const double both = corners[next++];
+      result.curvature(i, j) = result.curvature(j, i) =
+          (both - above(i) - above(j) + centre.value) / (kDifference * kDifference);
+    }
+  }
+  return result;
+}
+
+/// Holds the coordinates that a bound keeps from descending.
+void hold_at_bounds(const SearchPoint& at, const SearchBounds& bounds, Quadratic& local) {
+  for (Index i = 0; i < kSize; ++i) {
+    const bool held = (at[i] <= bounds.lower[i] && local.slope[i] > 0.0) ||
+                      (at[i] >= bounds.upper[i] && local.slope[i] < 0.0);
+    if (!held) continue;
+    local.slope[i] = 0.0;
+    local.curvature.row(i).setZero();
+    local.curvature.col(i).setZero();
+  }
+}
+
+/// Steps downhill, one per damping; curvatures count by their size.
+std::vector<SearchPoint> damped_steps(const Quadratic& local) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(local.curvature);
+  const SearchPoint sizes = axes.eigenvalues().cwiseAbs();
+  const SearchPoint along = axes.eigenvectors().transpose() * local.slope;
+  std::vector<SearchPoint> steps;
+  for (const double damping : kDampings) {
+    const SearchPoint stiffness = sizes.array() + damping * sizes.maxCoeff() + 1e-12;
+    SearchPoint step = -axes.eigenvectors() * along.cwiseQuotient(stiffness);
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > kLongestStep) step *= kLongestStep / longest;
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+}  // namespace
+
+Minimum minimise(const BatchFunction& function, const Minimum& start, const SearchBounds& bounds,
+                 double enough) {
+  Minimum best = start;
+  for (int i = 0; i < kMostSteps; ++i) {
+    Quadratic local = quadratic_at(function, best);
+    hold_at_bounds(best.at, bounds, local);
+    std::vector<SearchPoint> points = damped_steps(local);
+    for (SearchPoint& point : points) {
+      point = (best.at + point).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+    }
+    const std::vector<double> values = function(points);
+    const auto least = std::min_element(values.begin(), values.end());
+    const double gained = best.value - *least;
+    if (gained > 0.0) best = {points[static_cast<std::size_t>(least - values.begin())], *least};
+    if (!(gained > enough)) break;
+  }
+  return best;
+}
+
+}  // namespace estimator::greybox::disturbance
