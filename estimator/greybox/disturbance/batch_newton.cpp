@@ -20,39 +20,45 @@ struct Quadratic {
   Matrix curvature;
 };
 
-Quadratic quadratic_at(const BatchFunction& function, const Minimum& centre) {
+/// Slopes, and curvatures along the coordinates; those between two of them are kept.
+void set_along(const BatchFunction& function, const Minimum& centre, Quadratic& local) {
   std::vector<SearchPoint> points;
   for (Index i = 0; i < kSize; ++i) {
     points.push_back(centre.at + kDifference * SearchPoint::Unit(i));
     points.push_back(centre.at - kDifference * SearchPoint::Unit(i));
   }
-  const std::vector<double> beside = function(points);
-  points.clear();
+  const std::vector<double> values = function(points);
+  for (Index i = 0; i < kSize; ++i) {
+    const double above = values[static_cast<std::size_t>(2 * i)];
+    const double below = values[static_cast<std::size_t>(2 * i + 1)];
+    local.slope[i] = (above - below) / (2.0 * kDifference);
+    local.curvature(i, i) = (above - 2.0 * centre.value + below) / (kDifference * kDifference);
+  }
+}
+
+/// Curvatures between two coordinates, from those along them.
+void set_between(const BatchFunction& function, const Minimum& centre, Quadratic& local) {
+  std::vector<SearchPoint> points;
   for (Index i = 0; i < kSize; ++i) {
     for (Index j = 0; j < i; ++j) {
       points.push_back(centre.at + kDifference * (SearchPoint::Unit(i) + SearchPoint::Unit(j)));
     }
   }
-  const std::vector<double> corners = function(points);
-  Quadratic result;
-  const auto above = [&](Index i) { return beside[static_cast<std::size_t>(2 * i)]; };
-  const auto below = [&](Index i) { return beside[static_cast<std::size_t>(2 * i + 1)]; };
+  const std::vector<double> values = function(points);
+  const auto along = [&](Index i) {
+    return kDifference * (local.slope[i] + 0.5 * kDifference * local.curvature(i, i));
+  };
   std::size_t next = 0;
   for (Index i = 0; i < kSize; ++i) {
-    result.slope[i] = (above(i) - below(i)) / (2.0 * kDifference);
-    result.curvature(i, i) =
-        (above(i) - 2.0 * centre.value + below(i)) / (kDifference * kDifference);
     for (Index j = 0; j < i; ++j) {
-      const double both = corners[next++];
-      result.curvature(i, j) = result.curvature(j, i) =
-          (both - above(i) - above(j) + centre.value) / (kDifference * kDifference);
+      local.curvature(i, j) = local.curvature(j, i) =
+          (values[next++] - centre.value - along(i) - along(j)) / (kDifference * kDifference);
     }
   }
-  return result;
 }
 
-/// Holds the coordinates that a bound keeps from descending.
-void hold_at_bounds(const SearchPoint& at, const SearchBounds& bounds, Quadratic& local) {
+/// Without the coordinates that a bound keeps from descending.
+Quadratic free_of_bounds(const SearchPoint& at, const SearchBounds& bounds, Quadratic local) {
   for (Index i = 0; i < kSize; ++i) {
     const bool held = (at[i] <= bounds.lower[i] && local.slope[i] > 0.0) ||
                       (at[i] >= bounds.upper[i] && local.slope[i] < 0.0);
@@ -61,6 +67,7 @@ void hold_at_bounds(const SearchPoint& at, const SearchBounds& bounds, Quadratic
     local.curvature.row(i).setZero();
     local.curvature.col(i).setZero();
   }
+  return local;
 }
 
 /// Steps downhill, one per damping; curvatures count by their size.
@@ -84,10 +91,15 @@ std::vector<SearchPoint> damped_steps(const Quadratic& local) {
 Minimum minimise(const BatchFunction& function, const Minimum& start, const SearchBounds& bounds,
                  double enough) {
   Minimum best = start;
+  Quadratic local;
+  int known = -1;  ///< step for which the curvatures between coordinates were found
   for (int i = 0; i < kMostSteps; ++i) {
-    Quadratic local = quadratic_at(function, best);
-    hold_at_bounds(best.at, bounds, local);
-    std::vector<SearchPoint> points = damped_steps(local);
+    set_along(function, best, local);
+    if (known < 0) set_between(function, best, local);
+    if (known < 0) known = i;
+    const Quadratic free = free_of_bounds(best.at, bounds, local);
+    std::vector<SearchPoint> points = damped_steps(free);
+    if (known == i && !(-free.slope.dot(points.front()) > enough)) break;
     for (SearchPoint& point : points) {
       point = (best.at + point).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
     }
@@ -95,7 +107,9 @@ Minimum minimise(const BatchFunction& function, const Minimum& start, const Sear
     const auto least = std::min_element(values.begin(), values.end());
     const double gained = best.value - *least;
     if (gained > 0.0) best = {points[static_cast<std::size_t>(least - values.begin())], *least};
-    if (!(gained > enough)) break;
+    if (gained > enough) continue;
+    if (known == i) break;
+    known = -1;  // curvatures of another place may have misled it
   }
   return best;
 }

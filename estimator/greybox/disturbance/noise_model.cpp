@@ -26,7 +26,7 @@ constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
 /// Fall of -2 log L below which a step of the search is its last.
-constexpr double kEnough = 0.02;
+constexpr double kEnough = 0.1;
 
 /// Logarithms of the disturbance's intensity, its standard deviation times the root of its corner,
 /// of its corner, walk and sensor noise. Above the corner the intensity alone is seen.
@@ -212,6 +212,13 @@ void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
         fit_waves(models[r], record, gains, noise.lines, innovations.col(0));
     for (std::size_t i = 0; i < more.size(); ++i) noise.waves[i][r] += more[i];
   }
+}
+
+double minus_two_log_likelihood(const plant_sim::ModelFile& model, const FitDataset& data,
+                                const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                                const Linearisations& models, const NoiseModel& noise) {
+  return Likelihood(model, data, parameters, theta, models, noise, 1)({point_of(noise.noise)})
+      .front();
 }
 
 NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset& data,

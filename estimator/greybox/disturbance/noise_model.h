@@ -54,6 +54,14 @@ struct NoiseEstimate {
   double minus_two_log_likelihood = 0.0;  ///< up to a constant; residuals per noise floor
 };
 
+/// -2 log L with a noise model as it is, its waves included.
+[[nodiscard]] double minus_two_log_likelihood(const plant_sim::ModelFile& model,
+                                              const FitDataset& data,
+                                              const std::vector<FreeParameter>& parameters,
+                                              const Eigen::VectorXd& theta,
+                                              const Linearisations& models,
+                                              const NoiseModel& noise);
+
 /// `start`: lines are kept, its noise is one of the starts when its sensor_m is positive.
 [[nodiscard]] NoiseEstimate estimate_noise(const plant_sim::ModelFile& model,
                                            const FitDataset& data,

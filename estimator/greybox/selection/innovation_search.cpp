@@ -43,12 +43,8 @@ void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
   for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
     for (const disturbance::LineSite site : disturbance::sites_of(stage.linear.front())) {
       if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
-      disturbance::NoiseModel noise = stage.noise;
-      noise.lines[i].site = site;
-      if (i < noise.waves.size()) {
-        noise.waves[i].assign(noise.waves[i].size(), Eigen::Vector2d::Zero());
-      }
-      InnovationStage other = settled(plain, stage.model, noise, 1, wide(plain.options.threads));
+      InnovationStage other =
+          settled(plain, stage.model, moved(stage.noise, i, site), 1, wide(plain.options.threads));
       if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
     }
   }

@@ -54,7 +54,43 @@ std::vector<plant_sim::EffectInfo> absent_from(const SearchContext& context,
   return effects;
 }
 
+/// The lines at the sites where the model makes them likeliest: one that lacks an effect may have
+/// put them where they make up for it.
+NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& start,
+                               NoiseModel noise) {
+  if (noise.lines.empty() || plain.cancelled()) return noise;
+  const plant_sim::ModelFile& model = plain.problem.model;
+  const FitDataset& data = plain.problem.data;
+  const FitSummary& at = start.fitted;
+  const disturbance::Linearisations linear =
+      disturbance::linearise(model, data, at.parameters, at.theta);
+  const auto cost = [&](const NoiseModel& tried) {
+    return disturbance::minus_two_log_likelihood(model, data, at.parameters, at.theta, linear,
+                                                 tried);
+  };
+  double least = cost(noise);
+  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
+    for (const disturbance::LineSite site : disturbance::sites_of(linear.front())) {
+      if (site == noise.lines[i].site) continue;
+      NoiseModel other = moved(noise, i, site);
+      const double now = cost(other);
+      if (!(now < least)) continue;
+      least = now;
+      noise = std::move(other);
+    }
+  }
+  return noise;
+}
+
 }  // namespace
+
+NoiseModel moved(NoiseModel noise, std::size_t line, disturbance::LineSite site) {
+  noise.lines[line].site = site;
+  if (line < noise.waves.size()) {
+    noise.waves[line].assign(noise.waves[line].size(), Eigen::Vector2d::Zero());
+  }
+  return noise;
+}
 
 double penalty_nats(const FitSummary& with, const FitSummary& without) {
   return kPerParameter_nats *
@@ -160,10 +196,12 @@ void sort_by_gain(std::vector<InnovationTrial>& trials) {
 InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
                         const InnovationTrial& trial) {
   NoiseModel noise = stage.noise;
-  if (trial.candidate.effect.empty()) noise.lines.push_back(trial.candidate.line);
+  const bool is_line = trial.candidate.effect.empty();
+  if (is_line) noise.lines.push_back(trial.candidate.line);
   InnovationStage best;
   for (const ModelStage& start : trial.starts) {
-    InnovationStage one = settled(plain, start, noise, 1, SimulationWidth{});
+    const NoiseModel own = is_line ? noise : with_likelier_sites(plain, start, noise);
+    InnovationStage one = settled(plain, start, own, 1, SimulationWidth{});
     if (one.minus_two_log < best.minus_two_log) best = std::move(one);
   }
   return best;

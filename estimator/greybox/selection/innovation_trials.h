@@ -30,6 +30,10 @@ struct InnovationTrial {
   bool simulated = false;  ///< promising in a simulation with the weak observer
 };
 
+/// The noise model with a line at another site; what its waves were there is forgotten.
+[[nodiscard]] disturbance::NoiseModel moved(disturbance::NoiseModel noise, std::size_t line,
+                                            disturbance::LineSite site);
+
 [[nodiscard]] double penalty_nats(const FitSummary& with, const FitSummary& without);
 /// -2 log L with a penalty for each parameter.
 [[nodiscard]] double penalised(const InnovationStage& stage);

@@ -91,7 +91,7 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const std::optional<LawSearch> found =
       search_laws(context, first, site, added.size() > 1 ? added : std::vector<std::string>());
   return found && found->innovations.final.model.added.size() <= added.size() &&
-         penalised(found->innovations.final) < penalised(named) - 2.0 * kEvidence_nats &&
+         penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);
 }
 
