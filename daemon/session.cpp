@@ -22,6 +22,7 @@
 #include "daemon/main_event_loop.h"
 #include "daemon/null_table.h"
 #include "daemon/prepared_session.h"
+#include "daemon/readings_now.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
 #include "daemon/safe_state_note.h"
@@ -345,6 +346,8 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
       << config::schema::hash_text(p.hash) << "\n";
   for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
+  const bool is_record = !std::isnan(p.devices.sample_time_s);
+  if (absent.empty() && !is_record) out << "# Read now: " << readings_now(p.devices) << "\n";
   if (!config.drives_valve()) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";
   } else {

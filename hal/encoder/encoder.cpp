@@ -113,8 +113,9 @@ BackendDevices EncoderBackend::open(const OpenContext& context) const {
   }
   BackendDevices devices;
   for (const GpioSwitchConfig& item : config_.outputs) {
-    devices.outputs[item.name] = std::make_shared<SwitchOutput>(chip->request(
-        table + "output \"" + item.name + "\" line", item.line, Use::output, item.wiring));
+    devices.outputs[item.name] = std::make_shared<SwitchOutput>(
+        chip->request(table + "output \"" + item.name + "\" line", item.line,
+                      context.exclusive ? Use::output : Use::claim, item.wiring));
   }
   const TrackerOptions options{config_.per_cycle(), config_.max_edges_per_s, index != nullptr};
   const auto watch = std::make_shared<EncoderWatch>(

@@ -34,6 +34,21 @@ int flags_of(const Wiring& wiring) {
   return flags;
 }
 
+int request_line(gpiod_line* line, Use use, int flags) {
+  const gpiod_line_request_config as_is{kConsumer, GPIOD_LINE_REQUEST_DIRECTION_AS_IS, 0};
+  switch (use) {
+    case Use::edges:
+      return gpiod_line_request_both_edges_events_flags(line, kConsumer, flags);
+    case Use::input:
+      return gpiod_line_request_input_flags(line, kConsumer, flags);
+    case Use::output:
+      return gpiod_line_request_output_flags(line, kConsumer, flags, 0);
+    case Use::claim:
+      break;
+  }
+  return gpiod_line_request(line, &as_is, 0);
+}
+
 }  // namespace
 
 std::shared_ptr<GpioChip> GpioChip::open(const std::string& where, const std::string& description) {
@@ -56,12 +71,9 @@ std::shared_ptr<GpioLine> GpioChip::request(const std::string& where, std::int64
                      name + " has lines 0 to " + std::to_string(lines - 1));
   }
   gpiod_line* line = gpiod_chip_get_line(chip_, static_cast<unsigned>(offset));
-  const int flags = flags_of(wiring);
   int result = -1;
   if (line != nullptr) {
-    result = use == Use::edges ? gpiod_line_request_both_edges_events_flags(line, kConsumer, flags)
-             : use == Use::input ? gpiod_line_request_input_flags(line, kConsumer, flags)
-                                 : gpiod_line_request_output_flags(line, kConsumer, flags, 0);
+    result = request_line(line, use, flags_of(wiring));
   }
   if (result != 0) {
     const int error = errno;

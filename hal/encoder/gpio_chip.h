@@ -15,7 +15,8 @@ namespace hal::encoder {
 /// Named in error messages.
 inline constexpr const char* kConsumer = "spoolwatch";
 
-enum class Use : std::uint8_t { edges, input, output };
+/// `claim`: the line as it is; neither its direction nor its level changes.
+enum class Use : std::uint8_t { edges, input, output, claim };
 
 /// Wiring of a line. `bias`: as_is, pull_up, pull_down, disabled.
 struct Wiring {

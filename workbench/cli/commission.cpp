@@ -5,11 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/stand/daemon_check.h"
 
 namespace workbench::cli {
 namespace {
@@ -24,9 +24,7 @@ struct CommissionCommandOptions {
 /// Replaces this process, so that signals reach it. Throws Error when it cannot.
 [[noreturn]] void become_daemon(const CommissionCommandOptions& options,
                                 const std::vector<std::string>& more) {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  std::string program = (self.parent_path() / "spoolwatchd").string();
+  std::string program = stand::daemon_program().string();
   std::vector<std::string> words{"--config", options.config, "--commission", options.out};
   words.insert(words.end(), more.begin(), more.end());
   std::vector<char*> argv{program.data()};

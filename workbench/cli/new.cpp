@@ -1,18 +1,17 @@
-// spoolwatch new: a commented model file from a kind of rig and the numbers of its data sheets, as
-// options or asked in the terminal.
+// spoolwatch new: a commented model file from a kind of rig, or the daemon's configuration of a
+// stand, from the numbers of data sheets, as options or asked in the terminal.
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
-#include <optional>
+#include <set>
 
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
@@ -22,9 +21,12 @@
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
+#include "workbench/cli/new_stand.h"
 #include "workbench/model/kinds.h"
 #include "workbench/model/sheet.h"
 #include "workbench/present/printed_axis.h"
+#include "workbench/questions/question.h"
+#include "workbench/stand/answers.h"
 
 namespace workbench::cli {
 namespace {
@@ -40,50 +42,16 @@ struct NewOptions {
   std::map<std::string, std::string> given;  ///< as typed, by flag
 };
 
-/// The whole text as a number.
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, failed] = std::from_chars(text.data(), end, value);
-  return failed == std::errc() && rest == end ? std::optional<double>(value) : std::nullopt;
-}
-
 /// Throws for a text that is no number. A flag of another kind is left to check_answers().
 Answers answers_in(const Kind& kind, const std::map<std::string, std::string>& given) {
   Answers answers;
   for (const auto& [flag, text] : given) {
     const auto asks = [&, &name = flag](const Question& q) { return q.flag == name; };
     const auto q = std::find_if(kind.questions.begin(), kind.questions.end(), asks);
-    const std::optional<double> value = number_in(text);
-    if (!value && q != kind.questions.end()) {
-      throw UsageError(
-          fmt::format("new {}: --{} is \"{}\", no number; allowed: {:g} to {:g}{}", kind.name, flag,
-                      text, q->min, q->max,
-                      text.find(',') == std::string::npos ? "" : ", with a point for decimals"));
-    }
-    answers[flag] = value.value_or(0.0);
+    answers[flag] =
+        q == kind.questions.end() ? 0.0 : questions::number_answer("new " + kind.name, *q, text);
   }
   return answers;
-}
-
-/// An answer within its range, asked until there is one; empty takes the usual value. Throws where
-/// the input ends.
-double asked(const Question& q) {
-  for (;;) {
-    std::cout << q.what << "\n  " << q.where << "; " << q.min << " to " << q.max << "\n  --"
-              << q.flag
-              << (std::isnan(q.usual) ? "" : " [" + config::units::three_digits(q.usual) + "]")
-              << ": " << std::flush;
-    std::string line;
-    if (!std::getline(std::cin, line)) {
-      throw UsageError("new: the input ended before --" + q.flag + " was answered");
-    }
-    if (line.empty() && !std::isnan(q.usual)) return q.usual;
-    const std::optional<double> value = number_in(line);
-    if (value && *value >= q.min && *value <= q.max) return *value;
-    std::cout << "  " << (line.empty() ? "nothing" : line)
-              << " is no answer; allowed: a number from " << q.min << " to " << q.max << "\n";
-  }
 }
 
 /// Throws where a file would be lost, or the name is no plain text.
@@ -92,22 +60,19 @@ void check_output(const std::string& file, const std::string& name) {
   if (std::filesystem::exists(file, ignored)) {
     throw config::schema::UsageError("--output " + file + ": exists; allowed: a new file");
   }
-  const auto is_plain = [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\'; };
-  if (!std::all_of(name.begin(), name.end(), is_plain)) {
+  if (!questions::is_plain(name)) {
     throw config::schema::UsageError(
         "--name: has a quote, a backslash or a control character; allowed: other text");
   }
 }
 
-void make(const NewOptions& options, const std::string& command) {
+void make_model(const NewOptions& options, const std::string& name, const std::string& command) {
   const Kind& kind = model::find_kind(options.kind);
-  const std::string name =
-      options.name.empty() ? std::filesystem::path(options.output).stem().string() : options.name;
-  check_output(options.output, name);
   Answers answers = answers_in(kind, options.given);
-  if (options.ask || isatty(STDIN_FILENO) == 1) {
+  if (options.ask) {
     for (const Question& q : kind.questions) {
-      if (answers.count(q.flag) == 0) answers[q.flag] = asked(q);
+      if (answers.count(q.flag) > 0) continue;
+      answers[q.flag] = questions::number_in(questions::asked(q, std::cin, std::cout)).value();
     }
   }
   check_answers(kind, answers);
@@ -131,28 +96,63 @@ void make(const NewOptions& options, const std::string& command) {
             << options.output << "\n";
 }
 
+void make(NewOptions options, const std::string& command) {
+  const std::string name =
+      options.name.empty() ? std::filesystem::path(options.output).stem().string() : options.name;
+  check_output(options.output, name);
+  options.ask = options.ask || isatty(STDIN_FILENO) == 1;
+  if (options.kind == kStandKind) {
+    make_stand({options.output, name, command, options.ask, options.given});
+  } else {
+    make_model(options, name, command);
+  }
+}
+
+/// One option for each flag, although several kinds may ask for it.
+class QuestionOptions {
+ public:
+  QuestionOptions(CLI::App& command, std::shared_ptr<NewOptions> options)
+      : command_(command), options_(std::move(options)) {}
+
+  /// `group`: heading of the help; null: the usual one.
+  void add(const Question& q, const char* group) {
+    if (!known_.insert(q.flag).second) return;
+    const bool is_number = q.form == questions::Form::number || q.form == questions::Form::whole;
+    const std::string choices =
+        q.form == questions::Form::choice ? ": " + questions::allowed(q) : "";
+    CLI::Option* option = command_.add_option_function<std::string>(
+        "--" + q.flag,
+        [options = options_, flag = q.flag](const std::string& text) {
+          options->given[flag] = text;
+        },
+        q.what + choices + " (" + q.where + ")");
+    option->type_name(is_number ? "FLOAT" : "TEXT");
+    if (group != nullptr) option->group(group);
+  }
+
+ private:
+  CLI::App& command_;
+  std::shared_ptr<NewOptions> options_;
+  std::set<std::string> known_;
+};
+
 }  // namespace
 
 void add_new(CLI::App& command, int&) {
   auto options = std::make_shared<NewOptions>();
   std::vector<std::string> names;
   for (const Kind& kind : model::kinds()) names.push_back(kind.name);
+  names.emplace_back(kStandKind);
   command.add_option("KIND", options->kind, config::schema::joined(names))->required();
-  command.add_option("-o,--output", options->output, "the model file to write")->required();
-  command.add_option("--name", options->name, "the model's name; default: the file's");
+  command.add_option("-o,--output", options->output, "the file to write")->required();
+  command.add_option("--name", options->name, "the model's or stand's name; default: the file's");
   command.add_flag("--ask", options->ask, "ask for what is not given, also without a terminal");
-  std::vector<std::string> known;
+  QuestionOptions flags(command, options);
   for (const Kind& kind : model::kinds()) {
-    for (const Question& q : kind.questions) {
-      if (std::find(known.begin(), known.end(), q.flag) != known.end()) continue;
-      known.push_back(q.flag);
-      command
-          .add_option_function<std::string>(
-              "--" + q.flag,
-              [options, flag = q.flag](const std::string& text) { options->given[flag] = text; },
-              q.what + " (" + q.where + ")")
-          ->type_name("FLOAT");
-    }
+    for (const Question& q : kind.questions) flags.add(q, nullptr);
+  }
+  for (const stand::StandQuestion& one : stand::stand_questions()) {
+    flags.add(one.question, one.group);
   }
   command.footer([] {
     std::string text = "Numbers that each kind needs, with usual values:\n";
@@ -164,6 +164,8 @@ void add_new(CLI::App& command, int&) {
       }
       text += "\n";
     }
+    text +=
+        "A stand (KIND stand) is the daemon's configuration; --backend decides what is asked.\n";
     return text;
   }());
   command.callback([options, &command] { make(*options, command_line("new", command)); });

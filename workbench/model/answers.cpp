@@ -123,10 +123,7 @@ void check_answers(const Kind& kind, const Answers& answers) {
       if (std::isnan(q.usual)) missing.push_back("--" + q.flag + " (" + q.what + ")");
       continue;
     }
-    if (!(given->second >= q.min && given->second <= q.max)) {
-      throw UsageError(fmt::format("new {}: --{} is {:g}, out of range; allowed: {:g} to {:g}",
-                                   kind.name, q.flag, given->second, q.min, q.max));
-    }
+    questions::check_range("new " + kind.name, q, given->second);
   }
   for (const auto& [flag, value] : answers) {
     if (std::find(flags.begin(), flags.end(), "--" + flag) != flags.end()) continue;

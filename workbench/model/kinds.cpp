@@ -15,8 +15,8 @@ namespace workbench::model {
 namespace {
 
 using config::schema::UsageError;
+using questions::kMust;
 
-constexpr double kMust = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPi = std::numbers::pi;
 
 // Numbers that several kinds ask for.

@@ -6,17 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "workbench/questions/question.h"
+
 namespace workbench::model {
 
-/// A number of a data sheet. Values are in the unit of the flag: "bore-mm", "rated-flow-lpm".
-struct Question {
-  std::string flag;   ///< without the dashes
-  std::string what;   ///< "piston diameter"
-  std::string where;  ///< where a data sheet has it
-  double min = 0.0;
-  double max = 0.0;
-  double usual = 0.0;  ///< NaN: there is none, it must be given
-};
+using questions::Question;
 
 struct Kind {
   std::string name;
