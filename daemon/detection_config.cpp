@@ -8,6 +8,7 @@
 #include "config/schema/error.h"
 #include "config/schema/flat_visitor.h"
 #include "config/schema/read_file.h"
+#include "daemon/control/guard_limits.h"
 #include "estimator/fdi/snapshot.h"
 
 namespace monitor {
@@ -158,9 +159,16 @@ std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after) 
   return keys;
 }
 
+bool is_guard_limit(const std::string& key) {
+  const std::size_t end = key.rfind(": ");
+  return key.starts_with("[[guard]] ") && end != std::string::npos &&
+         control::is_guard_limit(std::string_view(key).substr(end + 2));
+}
+
 bool may_change(const std::string& key, const estimator::fdi::PipelineConfig& pipeline) {
   if (key == "[alarms] folder" || key == "[alarms] audit_bytes") return false;
-  return pipeline.owns(key) || key.starts_with("[alarms]") || key.starts_with("[model]");
+  return pipeline.owns(key) || is_guard_limit(key) || key.starts_with("[alarms]") ||
+         key.starts_with("[model]");
 }
 
 }  // namespace monitor

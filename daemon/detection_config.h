@@ -31,6 +31,8 @@ struct DetectionConfig {
 /// Keys that differ between two configurations, such as "[[band]] gain: high".
 [[nodiscard]] std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after);
 
+/// True when a key, as differences() names it, is a limit of a guard.
+[[nodiscard]] bool is_guard_limit(const std::string& key);
 /// True when a key, as differences() names it, may change while the daemon runs.
 [[nodiscard]] bool may_change(const std::string& key,
                               const estimator::fdi::PipelineConfig& pipeline);

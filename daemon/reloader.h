@@ -1,7 +1,8 @@
-// Reloads the configuration of the running daemon. The whole file is checked, only the detection
-// configuration (detection_config.h) may differ, and the detector applies the update between two
-// samples. On any error the old configuration stays. Each attempt is written to the log, to the
-// audit file and to the service manager's status.
+// Reloads the configuration of the running daemon. The whole file is checked; only the detection
+// configuration (detection_config.h) and the limits of guards may differ. The loop takes new limits
+// first, between two ticks: those that let more pass only while nothing is armed. Then the detector
+// applies the update between two samples. On any error the old configuration stays. Each attempt is
+// written to the log, to the audit file and to the service manager's status.
 //
 // Main thread only.
 #pragma once
@@ -17,6 +18,7 @@
 #include "daemon/detection/detection_update.h"
 #include "daemon/io/audit.h"
 #include "daemon/rt/clock.h"
+#include "daemon/rt/queues.h"
 
 namespace monitor {
 
@@ -39,6 +41,8 @@ class Reloader {
     /// Reads the configuration in the same way as at startup; throws config::schema::Error.
     std::function<void(DaemonConfig&)> read;
     std::uint64_t rules_hash;  ///< schema::hash_of(DetectionConfig::text) at startup
+    /// To the loop; null: the limits of guards cannot change.
+    rt::CommandQueue* commands = nullptr;
   };
   /// `running`: the active configuration; updated after each successful reload.
   Reloader(Parts parts, DaemonConfig& running, double sample_time_s);
@@ -46,7 +50,8 @@ class Reloader {
   /// Starts a reload. Returns false while another one is in progress. `what`: the request, for the
   /// audit file.
   bool begin(unsigned uid, const std::string& what);
-  /// Completes the reload once the detector has applied the update.
+  /// Completes the reload once the loop and the detector have applied the
+  /// update.
   void poll();
   [[nodiscard]] bool busy() const noexcept { return attempt_ != nullptr; }
   /// The result of the newest completed attempt.
@@ -67,8 +72,20 @@ class Reloader {
     std::string what;
     DaemonConfig next;
     std::vector<std::string> changed;
+    std::shared_ptr<detection::DetectionUpdate> update;
+    std::shared_ptr<rt::GuardUpdate> guards;  ///< null: they stay
+    std::string loosened;                     ///< the first limit that lets more pass
+    std::int64_t deadline_ns = 0;             ///< of the loop's answer
   };
   void prepare(Attempt& attempt);
+  /// Adds the new limits, and sends them to the loop.
+  void send_limits(Attempt& attempt);
+  /// True once the loop has taken the limits, or where there are none. Throws
+  /// when it has not.
+  [[nodiscard]] bool limits_taken(Attempt& attempt);
+  void send_to_detector();
+  /// Ends the attempt with the reason.
+  void reject(const std::exception& error);
   void end(ReloadOutcome outcome);
 
   Parts parts_;
@@ -76,6 +93,8 @@ class Reloader {
   double sample_time_s_;
   std::string config_hash_, rules_hash_;
   std::unique_ptr<Attempt> attempt_;
+  /// What the loop may still look at.
+  std::vector<std::shared_ptr<rt::GuardUpdate>> sent_;
   ReloadOutcome last_;
 };
 

@@ -191,7 +191,7 @@ Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostre
                                 prepared_.sample_time_s),
             prepared_.sample_time_s, {config.safety, prepared_.never_arms.empty()}),
       reloader_({clock_, log, alarms_.audit.get(), alarms_.evidence != nullptr, options.read,
-                 alarms_.pipeline_hash},
+                 alarms_.pipeline_hash, &commands_},
                 config, prepared_.sample_time_s),
       detector_({clock_,
                  *samples_,

@@ -85,6 +85,18 @@ void Guard::set(bool active, double value) noexcept {
   value_ = value;
 }
 
+void Guard::take_limits(const Guard& other) noexcept {
+  // While the rod returns from outside, its limits are wider.
+  low_now_m_ = low_now_m_ < low_ ? std::min(low_now_m_, other.low_) : other.low_;
+  high_now_m_ = high_now_m_ > high_ ? std::max(high_now_m_, other.high_) : other.high_;
+  time_s_ = other.time_s_;
+  low_ = other.low_;
+  high_ = other.high_;
+  braking_mps2_ = other.braking_mps2_;
+  least_m_ = other.least_m_;
+  command_V_ = other.command_V_;
+}
+
 void Guard::start(double y_m) noexcept {
   if (static_cast<std::size_t>(kind_) < kBuiltIn) return;
   active_ = false;
@@ -199,6 +211,12 @@ GuardTrip GuardMonitor::watch(const GuardInputs& inputs, const SensorWatch* sens
   }
   last_.update(inputs);
   return trip;
+}
+
+void GuardMonitor::take_limits(const std::vector<Guard>& guards) noexcept {
+  for (std::size_t i = 0; i < guards_.size() && i < guards.size(); ++i) {
+    guards_[i].take_limits(guards[i]);
+  }
 }
 
 void GuardMonitor::start(double y_m) noexcept {

@@ -65,6 +65,9 @@ class Guard {
   void watch(const GuardInputs& inputs, double dy_m, double dt_s, double period_s) noexcept;
   /// Sets a guard that is detected elsewhere.
   void set(bool active, double value) noexcept;
+  /// Takes the limits and times of `other`, a guard of the same kind; what is
+  /// active or has lasted for some time stays so.
+  void take_limits(const Guard& other) noexcept;
   /// A motion starts at y: timers restart; a rod outside its travel limits may return.
   void start(double y_m) noexcept;
 
@@ -115,6 +118,8 @@ class GuardMonitor {
   /// active. `sensor`: has evaluated the sensor guards already, and its states are copied; null:
   /// they are evaluated here.
   GuardTrip watch(const GuardInputs& inputs, const SensorWatch* sensor = nullptr) noexcept;
+  /// Takes the limits of `guards`, one for each of guards() in the same order.
+  void take_limits(const std::vector<Guard>& guards) noexcept;
   /// A motion starts at y_m.
   void start(double y_m) noexcept;
   /// Index of an active guard that forbids arming and starting (e_stop, missing, bus_lost, stale,

@@ -22,6 +22,12 @@ void SensorWatch::start(double y_m) noexcept {
   for (Watched& each : guards_) each.guard.start(y_m);
 }
 
+void SensorWatch::take_limits(const std::vector<Guard>& guards) noexcept {
+  for (Watched& each : guards_) {
+    if (each.number < guards.size()) each.guard.take_limits(guards[each.number]);
+  }
+}
+
 RodFault SensorWatch::fault() const noexcept {
   for (const Watched& each : guards_) {
     if (!each.guard.active()) continue;
@@ -65,6 +71,10 @@ PositionVoter::PositionVoter(const FailoverConfig& config, const std::vector<Gua
 void PositionVoter::start() noexcept {
   for (Rod& rod : rods_) rod.watch.start(rod.y_m);
   readmit();
+}
+
+void PositionVoter::take_limits(const std::vector<Guard>& guards) noexcept {
+  for (Rod& rod : rods_) rod.watch.take_limits(guards);
 }
 
 void PositionVoter::read(std::span<const RodReading> rods, double t_s, double command_V) noexcept {

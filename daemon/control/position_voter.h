@@ -44,6 +44,8 @@ class SensorWatch {
   /// `inputs`: with this sensor's y and age.
   void watch(const GuardInputs& inputs, double period_s) noexcept;
   void start(double y_m) noexcept;
+  /// Takes the limits of `guards`, in the order of all_guards().
+  void take_limits(const std::vector<Guard>& guards) noexcept;
 
   /// The fault indicated by an active guard.
   [[nodiscard]] RodFault fault() const noexcept;
@@ -82,6 +84,8 @@ class PositionVoter {
   void readmit() noexcept { readmit_ = true; }
   /// A motion starts.
   void start() noexcept;
+  /// Takes the limits of `guards`, in the order of all_guards().
+  void take_limits(const std::vector<Guard>& guards) noexcept;
 
   [[nodiscard]] std::size_t in_charge() const noexcept { return in_charge_; }
   /// True when another sensor took over in this tick.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/control/guard_config.h"
 #include "daemon/io/evidence.h"
 #include "estimator/fdi/pipeline.h"
 
@@ -20,6 +21,8 @@ struct DetectionUpdate {
   std::string config_hash;                             ///< hash of the whole configuration
   std::vector<std::string> estimators;                 ///< ids of all sources in order
   std::vector<io::EvidenceFile> evidence_files;
+  /// control::all_guards with new limits; empty: they stay.
+  std::vector<control::GuardConfig> guards;
 
   // Filled in by the detector.
   std::int64_t tick = 0;           ///< last sample processed by the old pipeline

@@ -129,6 +129,7 @@ void Detector::apply_updates() {
 void Detector::apply_update(DetectionUpdate& change) {
   estimator::fdi::Pipeline& next = *change.pipeline;
   AlarmBook& before = parts_.pipeline.alarms();
+  if (!change.guards.empty()) guard_alarms_.set_limits(change.guards);
   guard_alarms_.declare_in(next.alarms());
   next.alarms().adopt_conditions(before);
   const std::vector<bool> goes_on = next.inherit(parts_.pipeline);

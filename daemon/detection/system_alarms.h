@@ -45,6 +45,8 @@ class GuardAlarms {
 
   /// Declares the alarms in another book, which replaces the first.
   void declare_in(estimator::fdi::AlarmBook& book);
+  /// The same guards with other limits, for the next declare_in().
+  void set_limits(std::vector<control::GuardConfig> guards) { guards_ = std::move(guards); }
 
   /// Updates the alarms from `status` and calls `changed` for each alarm that came or went. A guard
   /// that was active for a single tick raises its alarm until the next call.

@@ -136,11 +136,27 @@ RejectReason Loop::carry_out(Event event, bool at_once) noexcept {
   return RejectReason::none;
 }
 
+void Loop::take(GuardUpdate& update, bool expired) noexcept {
+  using Outcome = GuardUpdate::Outcome;
+  const bool armed = arming_.state() == ArmingState::armed || arming_.state() == ArmingState::run;
+  const Outcome outcome = expired                   ? Outcome::expired
+                          : armed && update.loosens ? Outcome::armed
+                                                    : Outcome::applied;
+  if (outcome == Outcome::applied) {
+    guard_monitor_.take_limits(update.guards);
+    position_sensor_.voter().take_limits(update.guards);
+  }
+  update.outcome.store(outcome, std::memory_order_release);
+}
+
 RejectReason Loop::carry_out(const LoopCommand& command) noexcept {
-  if (parts_.clock.now_ns() >= command.expires_ns) {
+  const bool expired = parts_.clock.now_ns() >= command.expires_ns;
+  if (command.kind == LoopCommand::Kind::guards) take(*command.guards, expired);
+  if (expired) {
     parts_.stats.expired_commands.add();
     return RejectReason::expired;
   }
+  if (command.kind == LoopCommand::Kind::guards) return RejectReason::none;
   if (command.kind == LoopCommand::Kind::readmit) {
     position_sensor_.voter().readmit();
     return RejectReason::none;

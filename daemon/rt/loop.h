@@ -87,6 +87,7 @@ class Loop {
   void take_commands() noexcept;
   [[nodiscard]] control::RejectReason carry_out(const LoopCommand& command) noexcept;
   [[nodiscard]] control::RejectReason carry_out(control::Event event, bool at_once) noexcept;
+  void take(GuardUpdate& update, bool expired) noexcept;
   /// Why arming or starting is forbidden.
   [[nodiscard]] control::RejectReason obstacle(control::Event event) const noexcept;
   void apply(control::Event event) noexcept;

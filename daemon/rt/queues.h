@@ -8,13 +8,14 @@
 
 #include "config/signals/sample.h"
 #include "daemon/control/arming.h"
+#include "daemon/rt/guard_update.h"
 
 namespace monitor::rt {
 
 /// A command to the loop; a command that arrives at or after expires_ns is dropped and counted.
 struct LoopCommand {
   /// readmit: rod sensors that are right again may vote again
-  enum class Kind : std::uint8_t { event, sine, hold, readmit };
+  enum class Kind : std::uint8_t { event, sine, hold, readmit, guards };
   Kind kind = Kind::event;
   control::Event event = control::Event::disarm;  ///< kind event
   bool at_once = false;                           ///< kind event, start: without blending
@@ -22,7 +23,8 @@ struct LoopCommand {
   double centre_m = 0.0;                          ///< kind sine: the new reference signal
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
-  std::int64_t expires_ns = 0;  ///< on the loop's clock
+  GuardUpdate* guards = nullptr;  ///< kind guards; its outcome is the answer
+  std::int64_t expires_ns = 0;    ///< on the loop's clock
 };
 static_assert(std::is_trivially_copyable_v<LoopCommand>);
 

@@ -232,5 +232,79 @@ TEST(Permit, TogglesWithEveryGoodTickAndStopsWithATrip) {
   EXPECT_EQ(bench.stats.permit_good.value(), 11);
 }
 
+/// Sends these limits to the loop; returns what the loop did with them in the next tick.
+GuardUpdate::Outcome take(LoopBench& bench, const std::vector<control::GuardConfig>& guards,
+                          bool loosens, std::int64_t expires_ns = INT64_MAX) {
+  const auto all = control::all_guards(rules_of(guards).safety, control::Action::latch);
+  GuardUpdate update;
+  update.guards = std::vector<control::Guard>(all.begin(), all.end());
+  update.loosens = loosens;
+  LoopCommand command;
+  command.kind = LoopCommand::Kind::guards;
+  command.guards = &update;
+  command.expires_ns = expires_ns;
+  bench.commands.push(command);
+  bench.tick();
+  return update.outcome.load();
+}
+
+TEST(NewLimits, TripInTheSameTickWhereTheyAreTighter) {
+  LoopBench bench({}, true, rules_of({travel_to(0.3, "latch")}));
+  bench.run();
+  bench.rig.y_m = 0.25;
+  bench.tick();
+  ASSERT_EQ(bench.state(), ArmingState::run);
+  EXPECT_EQ(take(bench, {travel_to(0.2, "latch")}, false), GuardUpdate::Outcome::applied);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
+  EXPECT_DOUBLE_EQ(bench.rig.writes.back().u_V, kFakeNull_V);
+}
+
+TEST(NewLimits, ThatLetMorePassAreTakenWhileNothingIsArmed) {
+  LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
+  EXPECT_EQ(take(bench, {travel_to(0.3, "latch")}, true), GuardUpdate::Outcome::applied);
+  bench.run();
+  bench.rig.y_m = 0.25;
+  bench.tick();
+  EXPECT_EQ(bench.state(), ArmingState::run);
+  bench.rig.y_m = 0.31;
+  bench.tick();
+  EXPECT_EQ(bench.state(), ArmingState::latched);
+}
+
+TEST(NewLimits, ThatLetMorePassAreRefusedFromArmedOn) {
+  LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::none);
+  EXPECT_EQ(take(bench, {travel_to(0.3, "latch")}, true), GuardUpdate::Outcome::armed);
+  EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::none);
+  EXPECT_EQ(take(bench, {travel_to(0.3, "latch")}, true), GuardUpdate::Outcome::armed);
+  bench.rig.y_m = 0.25;
+  bench.tick();
+  EXPECT_EQ(bench.state(), ArmingState::latched) << "the old limit holds";
+}
+
+TEST(NewLimits, ThatComeTooLateAreDropped) {
+  LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
+  bench.tick();
+  EXPECT_EQ(take(bench, {travel_to(0.3, "latch")}, true, 1), GuardUpdate::Outcome::expired);
+  bench.run();
+  bench.rig.y_m = 0.25;
+  bench.tick();
+  EXPECT_EQ(bench.state(), ArmingState::latched);
+}
+
+/// Half of the old time has passed: the new time counts from the same moment.
+TEST(NewLimits, KeepHowLongAConditionHasLasted) {
+  control::GuardConfig lasting = travel_to(0.2, "latch");
+  lasting.time_s = 20 * kFakeSampleTime_s;
+  LoopBench bench({}, true, rules_of({lasting}));
+  bench.run();
+  bench.rig.y_m = 0.25;
+  for (int k = 0; k < 10; ++k) bench.tick();
+  ASSERT_EQ(bench.state(), ArmingState::run);
+  lasting.time_s = 5 * kFakeSampleTime_s;
+  EXPECT_EQ(take(bench, {lasting}, false), GuardUpdate::Outcome::applied);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
+}
+
 }  // namespace
 }  // namespace monitor::rt
