@@ -41,6 +41,12 @@ before_s = 1.0
 after_s = 0.5
 )";
   }
+  /// With a travel guard, around a motion from 0.28 to 0.33 m.
+  void write_with_guard(double high_m) const {
+    write(0.2, "");
+    std::ofstream(file(), std::ios::app)
+        << "\n[[guard]]\nkind = \"travel\"\nhigh_m = " << high_m << "\n";
+  }
   [[nodiscard]] std::string file() const { return (folder_.path() / "rig.toml").string(); }
   void start() {
     daemon_ = std::make_unique<Daemon>(std::vector<std::string>{
@@ -62,13 +68,14 @@ after_s = 0.5
   [[nodiscard]] json ask(const std::string& word) const {
     return json::parse(order(word + " --json -").out, nullptr, false);
   }
-  [[nodiscard]] json standing() const {
+  [[nodiscard]] json alarm_named(const std::string& name) const {
     const json answer = ask("alarms");
     for (const json& alarm : answer["alarms"]) {
-      if (alarm["name"] == "standing") return alarm;
+      if (alarm["name"] == name) return alarm;
     }
     return {};
   }
+  [[nodiscard]] json standing() const { return alarm_named("standing"); }
   template <class F>
   static bool becomes(F&& f) {
     for (int i = 0; i < 100; ++i) {
@@ -123,6 +130,40 @@ TEST_F(Reload, TakesNewLimitsWithoutALostCycleOrAlarm) {
   EXPECT_EQ(acts[0]["what"], "SIGHUP");
   EXPECT_EQ(acts[0]["done"], true);
   EXPECT_EQ(acts[1]["uid"], ::getuid());
+}
+
+TEST_F(Reload, TightensGuardsInRunAndLoosensThemOnlyWhileNothingIsArmed) {
+  const auto state = [&] { return ask("status")["state"]; };
+  write_with_guard(0.40);
+  start();
+  ASSERT_TRUE(becomes([&] { return state() == "RUN"; }));
+  write_with_guard(0.35);
+  const Result tighter = order("reload");
+  EXPECT_EQ(tighter.exit_code, 0);
+  EXPECT_THAT(tighter.out, HasSubstr("changed: [[guard]] travel: high_m\n"));
+  const json before = ask("status");
+  EXPECT_EQ(before["state"], "RUN");
+
+  write_with_guard(0.45);
+  const Result looser = order("reload");
+  EXPECT_EQ(looser.exit_code, 1);
+  EXPECT_THAT(
+      looser.out,
+      HasSubstr("rig.toml: [[guard]] travel: high_m: lets more pass, which is refused while "
+                "the rig is ARMED or in RUN; allowed: tighter limits; others after "
+                "spoolwatch disarm"));
+  EXPECT_EQ(ask("status")["config_hash"], before["config_hash"]);
+  EXPECT_EQ(order("disarm").exit_code, 0);
+  EXPECT_EQ(order("reload").exit_code, 0);
+  EXPECT_NE(ask("status")["config_hash"], before["config_hash"]);
+
+  EXPECT_EQ(order("arm").exit_code, 0);
+  EXPECT_EQ(order("start").exit_code, 0);
+  write_with_guard(0.31);  // inside the motion
+  EXPECT_EQ(order("reload").exit_code, 0);
+  EXPECT_TRUE(becomes([&] { return state() == "LATCHED"; }));
+  EXPECT_EQ(ask("status")["latched_by"], "travel");
+  EXPECT_EQ(alarm_named("travel")["high"], 0.31);
 }
 
 TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
