@@ -54,6 +54,11 @@ limit_m = 0.08
 time_s = 0.02
 action = "latch"
 )";
+inline constexpr const char* kEStop = R"(
+[[guard]]
+kind = "e_stop"
+action = "latch"
+)";
 inline constexpr const char* kEnable = R"(
 [modbus.registers.enable]
 role = "input"

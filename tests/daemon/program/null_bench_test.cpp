@@ -18,10 +18,11 @@ struct Failure {
   bool device_decides = false;  ///< the machine's load does not matter
   bool at_command = false;      ///< null is looked for in what was written, not at the valve
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
-  const char* more = kGuards;   ///< further configuration
+  std::string more = kGuards;   ///< further configuration
   bool by_cable = false;        ///< the daemon reaches the rig by the cable
   bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
   std::vector<std::string> set{};
+  const char* action{"-"};  ///< of the guard that acts
 };
 
 /// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two
@@ -44,7 +45,19 @@ bool kept_still(const std::vector<Look>& looks, std::int64_t begun_ns) {
 
 void signal_daemon(Daemon& daemon, int number) { kill(daemon.pid(), number); }
 
-std::vector<Failure> failures() {
+/// The failure with that action of every guard in its configuration.
+Failure with_action(Failure failure, const char* action) {
+  failure.action = action;
+  if (failure.row == "guard e_stop") failure.more += kEStop;
+  const std::string key = "action = \"";
+  for (std::size_t at = 0; (at = failure.more.find(key, at)) != std::string::npos;) {
+    at += key.size();
+    failure.more.replace(at, failure.more.find('"', at) - at, action);
+  }
+  return failure;
+}
+
+std::vector<Failure> causes() {
   return {
       {"stop, signal or error", [](Bench&, Daemon& d) { signal_daemon(d, SIGTERM); }},
       {"position missing", [](Bench& b, Daemon&) { b.set("encoder_offset_m=50"); }, false, false,
@@ -78,6 +91,19 @@ std::vector<Failure> failures() {
        true, kFollowing},
       {"enable lost", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false, kEnable},
   };
+}
+
+/// Every cause; those of guards once for each action that leads to null.
+std::vector<Failure> failures() {
+  std::vector<Failure> all;
+  for (const Failure& cause : causes()) {
+    if (cause.row.rfind("guard ", 0) != 0) {
+      all.push_back(cause);
+      continue;
+    }
+    for (const char* action : {"latch", "ramp"}) all.push_back(with_action(cause, action));
+  }
+  return all;
 }
 
 struct Trial {
@@ -121,8 +147,8 @@ Trial attempt(const Failure& failure, Bench& bench) {
 }
 
 TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
-  std::printf("# %-24s %-8s %14s %16s %20s %16s\n", "failure", "valve", "stated (ms)",
-              "measured (ms)", "stated travel (mm)", "measured (mm)");
+  std::printf("# %-24s %-8s %-6s %14s %16s %20s %16s\n", "failure", "valve", "action",
+              "stated (ms)", "measured (ms)", "stated travel (mm)", "measured (mm)");
   for (const Failure& failure : failures()) {
     Stated row;
     Trial trial;
@@ -145,9 +171,9 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
     if (!failure.spoils_reading) {
       std::snprintf(travel, sizeof travel, "%.2f", measured.travel_m * 1e3);
     }
-    std::printf("# %-24s %-8s %14.1f %7.1f to %5.1f %20.2f %16s\n", failure.row.c_str(), "modbus",
-                row.time_s * 1e3, measured.least_s * 1e3, measured.most_s * 1e3, row.travel_m * 1e3,
-                travel);
+    std::printf("# %-24s %-8s %-6s %14.1f %7.1f to %5.1f %20.2f %16s\n", failure.row.c_str(),
+                "modbus", failure.action, row.time_s * 1e3, measured.least_s * 1e3,
+                measured.most_s * 1e3, row.travel_m * 1e3, travel);
     if (failure.device_decides || trial.prompt) {
       EXPECT_LE(measured.least_s, row.time_s + trial.longer_s) << failure.row;
       EXPECT_LE(measured.travel_m, row.travel_m * (1.0 + trial.longer_s / row.time_s))

@@ -109,6 +109,10 @@ std::vector<Plan> plans(double at_s, const char* action) {
                         trouble("jump", at_s) + trouble("jump", at_s);
   saturated->failing = [](const Seen&, const Seen& now) { return now.sample.saturated; };
   add(guard_plan("disagree", action))->spare_off_s = at_s;
+  add(guard_plan("pressure", action))->troubles = wrong_pressure("supply_pressure", -5e6, at_s);
+  add(guard_plan("chambers", action))->troubles = wrong_pressure("pressure_in", 2e7, at_s);
+  add(guard_plan("transducer", action))->troubles =
+      trouble("missing", at_s) + "pressure = \"supply_pressure\"\n";
   Plan* overrun = add(guard_plan("overrun", action));
   overrun->stall_s = at_s;
   overrun->stall_periods = 3;

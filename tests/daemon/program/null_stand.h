@@ -29,12 +29,20 @@ struct Seen {
   config::signals::Sample sample;
 };
 
+inline std::string pressure_input(const std::string& role) {
+  return "[[input]]\nid = \"" + role + "\"\nrole = \"" + role +
+         "\"\nbackend = \"sim\"\nchannel = \"" + role + "\"\n";
+}
+
 inline std::string rig_toml(const std::string& more) {
   return "schema_version = 1\n[rod]\nbackend = \"sim\"\n"
          "[[spare_rod]]\nid = \"second\"\nbackend = \"sim\"\nchannel = \"second\"\n"
          "[valve]\nbackend = \"sim\"\nnull_V = 0.25\nlimit_V = 4.0\n"
          "[[input]]\nid = \"stop\"\nrole = \"e_stop\"\nbackend = \"sim\"\nchannel = \"stop\"\n"
-         "[[input]]\nid = \"enable\"\nrole = \"enable\"\nbackend = \"sim\"\nchannel = \"enable\"\n"
+         "[[input]]\nid = \"enable\"\nrole = \"enable\"\nbackend = \"sim\"\nchannel = "
+         "\"enable\"\n" +
+         pressure_input("supply_pressure") + pressure_input("pressure_in") +
+         pressure_input("pressure_out") +
          "[permit]\nbackend = \"sim\"\n"
          "[sim]\nmodel = \"" SPOOLWATCH_SOURCE_DIR
          "/config/models/thesis_calibrated.toml\"\nnoise_m = 2e-6\npretend_real = true\n"
@@ -51,6 +59,13 @@ inline std::string trouble(const char* kind, double from_s) {
   return std::string("[[sim.trouble]]\nkind = \"") + kind +
          "\"\nfrom_s = " + std::to_string(from_s) +
          (std::string(kind) == "jump" ? "\nsize_m = 0.02\n" : "\n");
+}
+
+/// A transducer of the simulated rig that reads so much more from then on.
+inline std::string wrong_pressure(const char* of, double offset_Pa, double from_s) {
+  return std::string("[[sim.pressure]]\nof = \"") + of +
+         "\"\noffset_Pa = " + std::to_string(offset_Pa) + "\nfrom_s = " + std::to_string(from_s) +
+         "\n";
 }
 
 inline constexpr double kNever_s = 1e6;
@@ -83,6 +98,9 @@ inline control::GuardConfig guard_of(const std::string& kind, const std::string&
   guard.least_m = 1e-4;
   guard.command_V = 0.2;
   guard.tolerance_m = 1e-3;
+  guard.channel = "supply_pressure";
+  guard.low_Pa = 3e6;  // the supply is at 6.9 MPa
+  guard.tolerance_Pa = 1e6;
   if (kind == "frozen" || kind == "saturated") guard.time_s = 0.05;
   if (kind == "following") guard.time_s = 0.02;
   return guard;
