@@ -113,7 +113,7 @@ bool is_plain(const std::string& text) {
 }
 
 std::string asked(const Question& q, std::istream& in, std::ostream& out) {
-  const std::string usual = usual_answer(q);
+  std::string usual = usual_answer(q);
   for (;;) {
     out << q.what << "\n  " << q.where << "; " << allowed(q) << "\n  --" << q.flag
         << (usual.empty() ? "" : " [" + usual + "]") << ": " << std::flush;

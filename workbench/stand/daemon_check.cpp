@@ -48,6 +48,7 @@ class Scratch {
 /// Exit code of the program; 128 and the signal where one ended it.
 int run(std::vector<std::string> words, const Scratch& out, const Scratch& err) {
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

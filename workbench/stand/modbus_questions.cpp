@@ -49,7 +49,7 @@ StandQuestion table(const char* flag, const char* what, std::vector<std::string>
   const std::string usual = choices.front();
   return {choice_question(flag, what,
                           "device manual: holding (4x), input (3x), discrete (1x), coil (0x)",
-                          std::move(choices), usual.c_str()),
+                          std::move(choices), usual),
           std::move(when), nullptr, kMap};
 }
 
