@@ -59,6 +59,35 @@ const MatVariables& scope_of(const MatVariables& variables, const std::string& n
   return found != nullptr ? found->fields : variables;
 }
 
+/// The variables that are objects of MATLAB's classes, and how to save what is in them; empty
+/// without any.
+std::string object_words(const MatVariables& variables) {
+  std::vector<std::string> names;
+  std::string of_class;
+  std::string script;
+  std::string saved;
+  bool all_series = true;
+  for (const MatVariable& variable : variables) {
+    if (variable.object_class.empty()) continue;
+    const std::string name = printable(variable.name);
+    const bool known = of_class.find(variable.object_class) != std::string::npos;
+    if (!known) of_class += (of_class.empty() ? "" : ", ") + printable(variable.object_class);
+    all_series = all_series && variable.object_class == "timeseries";
+    if (names.empty()) script = "t = " + name + ".Time; ";
+    const std::string field = name.substr(name.rfind('.') + 1);
+    script += field + " = squeeze(" + name + ".Data); ";
+    saved += ", \"" + field + "\"";
+    names.push_back(name);
+  }
+  if (names.empty()) return "";
+  const std::string words = config::schema::listed(names) +
+                            (names.size() == 1 ? " is an object" : " are objects") + " (" +
+                            of_class + "), whose layout in a file MATLAB does not document; ";
+  if (!all_series)
+    return words + "save its numbers as vectors, of a timeseries ts.Time and ts.Data";
+  return words + "in MATLAB: " + script + "save(\"vectors.mat\", \"t\"" + saved + ")";
+}
+
 /// Why it cannot be a column; empty when it can.
 std::string objection(const MatVariable& variable) {
   if (!variable.numeric) return "is of type " + variable.type;
@@ -126,13 +155,17 @@ class MatReader {
       flat = flattened(variables_);
       scope = &flat;
     }
+    objects_ = object_words(flattened(variables_));
     choose(*scope, map);
     FileHead head;
     head.where = name_;
     head.variables = true;
     head.step_s = stated_period_s(*scope);
-    if (!left_out_.empty() && chosen_.size() < 3)
-      head.more = "and no vectors: " + names_of(left_out_);
+    if (chosen_.size() < 3) {
+      head.more = !objects_.empty()   ? objects_
+                  : left_out_.empty() ? ""
+                                      : "and no vectors: " + names_of(left_out_);
+    }
     FileValues values;
     values.name = name_;
     for (const MatVariable* variable : chosen_) {
@@ -153,6 +186,7 @@ class MatReader {
     for (ChannelOrigin& origin : record.origins) {
       origin.header = head.columns[origin.column - 1].header;
     }
+    if (!objects_.empty()) record.notes.push_back("left out: " + objects_);
     if (!left_out_.empty()) {
       record.notes.push_back("left out, no " + std::string(kVectors) +
                              " of the time's length: " + names_of(left_out_));
@@ -199,6 +233,7 @@ class MatReader {
       } else if (is_main(parse_column(variable.name)) && map.empty()) {
         refuse(variable, why.empty() ? objection(variable) : why);
       } else {
+        if (!variable.object_class.empty()) continue;
         MatVariable named;
         named.name = variable.name;
         left_out_.push_back(std::move(named));
@@ -220,6 +255,7 @@ class MatReader {
   }
 
   [[noreturn]] void refuse(const MatVariable& variable, const std::string& why) const {
+    if (!variable.object_class.empty()) throw bad_data(name_, objects_);
     throw bad_data(name_, "variable " + printable(variable.name) + " " + why,
                    std::string(kVectors) + ", all of one length");
   }
@@ -229,6 +265,7 @@ class MatReader {
   const MatVariables variables_;
   std::vector<const MatVariable*> chosen_;
   MatVariables left_out_;  ///< names alone
+  std::string objects_;    ///< what is said of MATLAB's objects; empty: there are none
 };
 
 }  // namespace

@@ -121,6 +121,8 @@ MatVariable read_matrix(MatElements file, int depth) {
   variable.type = kClasses[kind < kClasses.size() ? kind : 0];
   if (kind == kOpaque) {
     variable.name = text_of(file.next().data);
+    if (!file.at_end()) file.next();  // the kind of class system, "MCOS"
+    if (!file.at_end()) variable.object_class = text_of(file.next().data);
     return variable;
   }
   read_dims(file, file.next(), variable);

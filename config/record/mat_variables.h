@@ -1,5 +1,6 @@
 // The variables of a MAT file, version 5 (what MATLAB saves with -v6 and -v7, Octave with -v6 and
-// -v7, SciPy's savemat): numbers and structures of them; of the rest only what it is.
+// -v7, SciPy's savemat): numbers and structures of them; of the rest only what it is. MATLAB's own
+// objects, such as timeseries, lie in a part of the file whose layout it does not document.
 //
 // Every length in the file is checked against the bytes that are there: a damaged or hostile file
 // ends in an error. matio 1.5.23, which writes the project's MAT files, cannot read them:
@@ -19,6 +20,7 @@ namespace config::record {
 struct MatVariable {
   std::string name;
   std::string type;               ///< "double", "text", "cell array", ... for messages
+  std::string object_class;       ///< "timeseries", "table", ...; empty: no object of MATLAB's
   std::vector<std::size_t> dims;  ///< two or more; empty where not known
   bool numeric = false;           ///< an array of numbers, logical ones included
   bool complex = false;

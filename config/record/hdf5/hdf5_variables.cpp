@@ -134,7 +134,8 @@ class FileReader {
     const bool object = H5Aexists(dataset, "MATLAB_object_decode") > 0;
     if (object || matlab == "char" || matlab == "cell" || matlab == "struct" ||
         matlab == "function_handle") {
-      variable.type = object ? "object of class " + matlab : matlab == "char" ? "text" : matlab;
+      variable.type = object ? "object" : matlab == "char" ? "text" : matlab;
+      if (object) variable.object_class = matlab;
       return;
     }
     if (kind == H5T_COMPOUND) {

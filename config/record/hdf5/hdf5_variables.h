@@ -3,7 +3,7 @@
 // Groups are structures, datasets of numbers with one long extent are vectors, tables (compound
 // types, or several columns) are structures of their columns. An attribute unit or units states a
 // dataset's unit. MATLAB's own groups (#refs#, #subsystem#) are passed over; its objects, such as
-// timeseries, are named and not read.
+// timeseries, are named and not read: their layout is not documented.
 //
 // The HDF5 library trusts the lengths in a file further than the project's own readers do: a
 // damaged file ends in an error as a rule, a hostile one need not. Programs that watch a stand do

@@ -104,6 +104,24 @@ TEST(Mat, SaysWhatIsWrongWithAVariable) {
             "'t=t_s,u=u_V,y=pos[mm]'");
 }
 
+TEST(Mat, SaysInOneLineHowToSaveWhatIsInMatlabsObjects) {
+  const auto error = [](const char* name) { return error_of(kFolder + name + ".mat"); };
+  const std::string why = ", whose layout in a file MATLAB does not document; ";
+  EXPECT_EQ(error("timeseries"),
+            "u and y are objects (timeseries)" + why +
+                "in MATLAB: t = u.Time; u = squeeze(u.Data); y = squeeze(y.Data); "
+                "save(\"vectors.mat\", \"t\", \"u\", \"y\")");
+  EXPECT_EQ(error("one_timeseries"),
+            "y is an object (timeseries)" + why +
+                "in MATLAB: t = y.Time; y = squeeze(y.Data); save(\"vectors.mat\", \"t\", \"y\")");
+  EXPECT_THAT(error("timetable"),
+              HasSubstr("log is an object (timetable)" + why + "save its numbers as vectors"));
+  const Record record = read("beside_objects");
+  expect_the_motion(record);
+  ASSERT_EQ(record.notes.size(), 1U);
+  EXPECT_THAT(record.notes[0], HasSubstr("left out: log is an object (timeseries)"));
+}
+
 TEST(Mat, TakesSamplesWithoutANumberForGaps) {
   const Record record = read("nan");
   EXPECT_EQ(record.size(), 19U);

@@ -5,6 +5,7 @@
 #include <matio.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -90,6 +91,30 @@ class Hdf5 : public testing::Test {
     H5Sclose(space);
   }
 
+  /// An object of a class of MATLAB's: numbers that point into #subsystem#.
+  static void write_object(hid_t group, const char* name, const std::string& of_class) {
+    const hsize_t dims[] = {6, 1};
+    const std::uint32_t points[] = {0xDD000000, 2, 1, 1, 1, 1};
+    const hid_t space = H5Screate_simple(2, dims, nullptr);
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t set =
+        H5Dcreate2(group, name, H5T_NATIVE_UINT32, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, points);
+    const hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, of_class.size());
+    const hid_t class_name =
+        H5Acreate2(set, "MATLAB_class", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(class_name, text, of_class.c_str());
+    const hid_t decode =
+        H5Acreate2(set, "MATLAB_object_decode", H5T_NATIVE_INT, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    const int kMcos = 3;
+    H5Awrite(decode, H5T_NATIVE_INT, &kMcos);
+    for (const hid_t attribute : {class_name, decode}) H5Aclose(attribute);
+    for (const hid_t one : {space, scalar}) H5Sclose(one);
+    H5Tclose(text);
+    H5Dclose(set);
+  }
+
   TemporaryFile file_{"", ".mat"};
   std::vector<double> t_s_;
   std::vector<double> u_V_;
@@ -116,6 +141,18 @@ TEST_F(Hdf5, ReadsNestedStructuresOfVersion73) {
   write_mat({outer});
   EXPECT_THAT(error(), HasSubstr("probably: --map 't=time[s],u=cmd[V],y=pos[mm]'"));
   expect_the_motion(read("t=time[s],u=cmd[V],y=pos[mm]"));
+}
+
+TEST_F(Hdf5, SaysInOneLineHowToSaveWhatIsInMatlabsObjects) {
+  const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  write_object(file, "u", "timeseries");
+  write_object(file, "y", "timeseries");
+  H5Gclose(H5Gcreate2(file, "#subsystem#", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  H5Fclose(file);
+  EXPECT_THAT(error(), HasSubstr("u and y are objects (timeseries), whose layout in a file MATLAB "
+                                 "does not document; in MATLAB: t = u.Time; u = squeeze(u.Data); "
+                                 "y = squeeze(y.Data); save("));
+  EXPECT_EQ(error().find('\n'), std::string::npos);
 }
 
 TEST_F(Hdf5, TakesUnitsFromAttributesAndGroupsAsStructures) {

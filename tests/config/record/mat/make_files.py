@@ -33,6 +33,35 @@ def big_endian(name, variables):
         file.write(out)
 
 
+def element(kind, data):
+    return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+
+def opaque(name, of_class):
+    """An object of one of MATLAB's classes: its name, and numbers that point into the file's end."""
+    points = np.array([0xDD000000, 2, 1, 1, 1, 1], dtype="<u4").tobytes()
+    array = (element(6, struct.pack("<II", 13, 0)) + element(5, struct.pack("<ii", 6, 1))
+             + element(1, b"") + element(6, points))
+    return element(14, element(6, struct.pack("<II", 17, 0)) + element(1, name.encode())
+                   + element(1, b"MCOS") + element(1, of_class.encode()) + element(14, array))
+
+
+def column(name, values):
+    return element(14, element(6, struct.pack("<II", 6, 0))
+                   + element(5, struct.pack("<ii", len(values), 1)) + element(1, name.encode())
+                   + element(9, np.asarray(values, dtype="<f8").tobytes()))
+
+
+def with_objects(name, parts):
+    """What MATLAB R2022 writes: the objects by name, their values in an array without one."""
+    values = element(14, element(6, struct.pack("<II", 9, 0))
+                     + element(5, struct.pack("<ii", 1, 8)) + element(1, b"")
+                     + element(2, b"\0\1IM\0\0\0\0"))
+    header = b"MATLAB 5.0 MAT-file, Platform: GLNXA64".ljust(116) + b"\0" * 8 + b"\0\1IM"
+    with open(f"{folder}/{name}.mat", "wb") as file:
+        file.write(header + b"".join(parts) + values)
+
+
 main = {"t_s": t_s, "u_V": u_V, "y_mm": y_mm}
 save("rows", main)
 save("columns", main, oned_as="column", do_compression=True)
@@ -55,3 +84,8 @@ save("no_unit", {"t": t_s, "u_V": u_V, "y_mm": y_mm})
 save("empty", {**main, "u_V": np.zeros((0, 0))})
 save("version_4", main, format="4")
 big_endian("big_endian", main)
+with_objects("timeseries", [opaque("u", "timeseries"), opaque("y", "timeseries")])
+with_objects("one_timeseries", [column("t_s", t_s), column("u_V", u_V), opaque("y", "timeseries")])
+with_objects("timetable", [opaque("log", "timetable")])
+with_objects("beside_objects", [column(name, values) for name, values in main.items()]
+             + [opaque("log", "timeseries")])
