@@ -22,6 +22,7 @@
 #include "workbench/present/printed_axis.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
+#include "workbench/simulate/late_changes.h"
 #include "workbench/simulate/transducers.h"
 
 namespace workbench::cli {
@@ -142,6 +143,13 @@ config::record::Record simulate_record(const SimulateArguments& arguments,
   return record;
 }
 
+void say_late_changes(const std::string& model, const std::vector<plant_sim::Change>& changes,
+                      double end_s) {
+  for (const std::string& late : simulate::late_changes(changes, end_s)) {
+    std::cerr << "spoolwatch: " << model << ": " << late << '\n';
+  }
+}
+
 /// The plant driven by the command of a record; its own controller and instruments have no part.
 config::record::Record simulate_command(const SimulateArguments& a) {
   const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
@@ -170,6 +178,7 @@ config::record::Record simulate_command(const SimulateArguments& a) {
     data.y_m.assign(given.size(),
                     plant_sim::make_plant(plant_sim::without_changes(model))->reading_m());
   }
+  say_late_changes(a.model, model.changes, given.t_s.back());
   data.starts = {0};
   data.starts.insert(data.starts.end(), given.gaps.begin(), given.gaps.end());
   greybox::Trajectory run = greybox::trajectory_of(model, data);
@@ -268,6 +277,8 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
     }
     check_pressures(*arguments, scenario);
     check_output(arguments->output);
+    say_late_changes(arguments->model, scenario.model.changes, arguments->duration_s);
+    say_late_changes(arguments->model, scenario.faults, arguments->duration_s);
     write_csv(simulate_record(*arguments, scenario), arguments->output);
   });
 }

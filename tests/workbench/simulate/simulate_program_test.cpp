@@ -43,6 +43,29 @@ TEST(SimulateProgram, WritesARecordThatReadsBack) {
   }
 }
 
+TEST(SimulateProgram, NamesTheChangesAndFaultsBehindItsEnd) {
+  const TemporaryFolder folder;
+  const std::string model = folder.file("late.toml");
+  std::ofstream(model) << text_of(kModel) << "\n[[change]]\nparameter = \"mass_kg\"\nat_s = 3.0\n"
+                       << "value = 60.0\n[[change]]\nparameter = \"bulk_modulus_Pa\"\n"
+                       << "at_s = 1.0\nvalue = 6e8\n";
+  const std::string call = "simulate " + model + " -o " + folder.file("a.csv");
+  const Outcome late = run_program(call + " --duration 2 --fault supply_pressure_Pa*1.1@2");
+  EXPECT_EQ(late.exit_code, 0);
+  EXPECT_EQ(late.error, "spoolwatch: " + model +
+                            ": the change of mass_kg at 3 s never sets in: the simulation ends at "
+                            "2 s\nspoolwatch: " +
+                            model +
+                            ": the change of supply_pressure_Pa at 2 s never sets in: the "
+                            "simulation ends at 2 s\n");
+  const Outcome open = run_program("simulate " + model + " -o " + folder.file("b.csv") +
+                                   " --command " + folder.file("a.csv"));
+  EXPECT_EQ(open.exit_code, 0);
+  EXPECT_THAT(open.error,
+              HasSubstr("mass_kg at 3 s never sets in: the simulation ends at 1.995 s"));
+  EXPECT_EQ(run_program(call + " --duration 4").error, "");
+}
+
 TEST(SimulateProgram, WritesPressuresWithNoiseWhereAskedTo) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.csv");
