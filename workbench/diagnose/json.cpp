@@ -6,6 +6,7 @@
 #include "estimator/greybox/held_scale.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/words.h"
+#include "workbench/present/held_scale_json.h"
 #include "workbench/present/json.h"
 
 namespace workbench::diagnose {
@@ -46,9 +47,7 @@ ordered_json parameters_of(const selection::Diagnosis& d) {
 ordered_json held_scale_of(const DiagnosisReport& outcome) {
   std::vector<std::string> names;
   for (const selection::ParameterValue& p : outcome.diagnosis.parameters) names.push_back(p.name);
-  const greybox::HeldScale held = greybox::held_scale(outcome.prepared->problem.model, names);
-  if (held.parameter.empty()) return nullptr;
-  return {{"parameter", held.parameter}, {"scaled", held.scaled}};
+  return present::json_of(greybox::held_scale(outcome.prepared->problem.model, names));
 }
 
 ordered_json refused_of(const selection::StructureSearch& search) {

@@ -4,6 +4,7 @@
 
 #include "estimator/greybox/held_scale.h"
 #include "workbench/fit/fit_report.h"
+#include "workbench/present/held_scale_json.h"
 #include "workbench/present/json.h"
 
 namespace workbench::fit {
@@ -83,11 +84,7 @@ std::string to_json(const FitReport& o) {
                    {"worse", e.starts.worse}};
   out["identifiability"] = {{"before", json_of(e.identifiability_before, e.parameters)},
                             {"after", json_of(e.identifiability_after, e.parameters)}};
-  const greybox::HeldScale held = greybox::held_scale(e.better, fitted_names(e));
-  out["held_scale"] = nullptr;
-  if (!held.parameter.empty()) {
-    out["held_scale"] = {{"parameter", held.parameter}, {"scaled", held.scaled}};
-  }
+  out["held_scale"] = present::json_of(greybox::held_scale(e.better, fitted_names(e)));
   ordered_json names = ordered_json::array();
   ordered_json matrix = ordered_json::array();
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
