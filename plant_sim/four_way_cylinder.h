@@ -9,6 +9,10 @@
 //   xv >= 0: Qi = Gi xv q(Ps - Pi),  Qo = Go xv q(Po - Pe)
 //   xv <  0: Qi = Gi xv q(Pi - Pe),  Qo = Go xv q(Ps - Po)
 //
+// and behind an underlap U, with a+ = max(xv + U, 0) and a- = max(U - xv, 0),
+//
+//   Qi = Gi (a+ q(Ps - Pi) - a- q(Pi - Pe)),   Qo = Go (a+ q(Po - Pe) - a- q(Ps - Po))
+//
 // y v rod position and speed; Pi Po pressures of the chambers that extend and retract the rod, Ai
 // Ao their areas, Vi Vo their volumes at the end of the stroke; Gi Go flow of a port per opening
 // and root of the drop; a inclination of the axis; xv spool position; u command. The command chain
@@ -18,6 +22,12 @@
 //   1 bar: a reversed orifice flows back, and the slope stays finite.
 // - End stops are inelastic: at y = 0 and y = L the rod loses its speed and is held while pushed
 //   outward. Vi, Vo > 0 and y within the stroke keep the volumes away from zero.
+// - End cushions, where the parameters give their length: oil that leaves a chamber on the last way
+//   to its stop passes a throttle Gc in series with the valve's edges Gv, so that
+//     1/G^2 = 1/Gv^2 + 1/Gc^2
+//   and the chamber's pressure builds up until the rod is slow. Oil that enters passes a check
+//   valve beside the throttle. Dead volume and area count as the cushion's: the spear's own area
+//   and the oil between throttle and valve are left out.
 // - Cavitation: pressures are counted from vapour pressure and do not fall below 0. The vapour's
 //   volume is not kept: when the rod returns, pressure rises at once, so oil is not conserved
 //   there.
@@ -42,6 +52,13 @@ struct CylinderSide {
   S orifice;  ///< flow of the port per opening and root of the drop, m3/s/(m sqrt(Pa))
 };
 
+/// Constants of the cushions at the ends of the stroke, computed from the plant's parameters.
+template <class S>
+struct EndCushions {
+  S retracted_m, extended_m;  ///< way before the stop on which the throttle acts; 0: no cushion
+  S retracted, extended;      ///< flow of the throttle per root of the drop, m3/s/sqrt(Pa)
+};
+
 /// Constants of the valve's spool, computed from the plant's parameters.
 template <class S>
 struct SpoolDynamics {
@@ -54,6 +71,7 @@ struct SpoolDynamics {
 /// `Design` names the parameters (Parameters) and says what they mean:
 ///   bool kEqualSides              same area, volume and orifice on both sides, on a level axis
 ///   in_side(p), out_side(p)       CylinderSide<S>
+///   cushions(p)                   EndCushions<S>
 ///   spool(p, step_s)              SpoolDynamics<S>
 ///   const char* kGainParameter    the parameter that stands for the valve's size
 ///   weight_N(p, mass_kg)          force against extension, unless kEqualSides
@@ -63,10 +81,11 @@ template <class S, class Design>
 class FourWayCylinder {
  public:
   static constexpr std::array kSites = {
-      effects::Site::command,      effects::Site::spool,   effects::Site::opening,
-      effects::Site::supply,       effects::Site::flow,    effects::Site::leakage,
-      effects::Site::bulk_modulus, effects::Site::inertia, effects::Site::force,
-      effects::Site::dry_friction, effects::Site::sensor,  effects::Site::coupling};
+      effects::Site::command, effects::Site::spool,        effects::Site::opening,
+      effects::Site::lap,     effects::Site::supply,       effects::Site::flow,
+      effects::Site::leakage, effects::Site::bulk_modulus, effects::Site::inertia,
+      effects::Site::force,   effects::Site::dry_friction, effects::Site::sensor,
+      effects::Site::coupling};
 
   using PlantDesign = Design;
   using Parameters = typename Design::Parameters;
@@ -122,6 +141,8 @@ class FourWayCylinder {
  private:
   struct Derived {
     CylinderSide<S> in, out;
+    EndCushions<S> cushions;
+    bool cushioned;
     S valve_gain_m_per_V, most_orifice;
     S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, arrest_kg_per_s, steady_rate;
     S weight_N;
@@ -136,6 +157,11 @@ class FourWayCylinder {
     S in_m3ps;   ///< into the chamber that extends
     S out_m3ps;  ///< out of the chamber that retracts
   };
+  /// Openings of an underlapped valve's edges.
+  struct Edges {
+    S ahead_m;  ///< those that extend the rod: Ps to chamber i, chamber o to Pe
+    S back_m;   ///< those that retract it: Ps to chamber o, chamber i to Pe
+  };
   static S root(const S& drop_Pa);
   [[nodiscard]] const CylinderSide<S>& in_side() const { return derived_.in; }
   [[nodiscard]] const CylinderSide<S>& out_side() const {
@@ -146,8 +172,13 @@ class FourWayCylinder {
   void rest_pressures(State& x) const;
   template <bool kEffects>
   S opening_m(const State& x) const;
+  Edges edges(const S& opening_m) const;
   template <bool kEffects>
   S inlet_Pa(const State& x, const S& opening_m) const;
+  Flows underlapped_flows(const State& x, const S& opening_m) const;
+  static S cushion_ratio(const S& edge, const S& throttle);
+  template <bool kEffects>
+  void throttle_ends(const State& x, const S& opening_m, Flows& q) const;
   template <bool kEffects>
   Flows flows(const State& x) const;
   S reach_m(const S& u_V) const;

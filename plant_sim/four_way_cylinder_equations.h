@@ -48,12 +48,30 @@ S FourWayCylinder<S, Design>::opening_m(const State& x) const {
   return opening_m;
 }
 
-/// Supply pressure that remains under the flow drawn through the open port.
+template <class S, class Design>
+typename FourWayCylinder<S, Design>::Edges FourWayCylinder<S, Design>::edges(
+    const S& opening_m) const {
+  const S lap_m = effects.underlap_m(derived_.valve_gain_m_per_V);
+  return {max(opening_m + lap_m, S(0.0)), max(lap_m - opening_m, S(0.0))};
+}
+
+/// Supply pressure that remains under the flow drawn through the open port; with two ports open
+/// that of their joint flow to the mean pressure behind them, weighted by their openings, which is
+/// exact where both chambers have the same pressure.
 template <class S, class Design>
 template <bool kEffects>
 S FourWayCylinder<S, Design>::inlet_Pa(const State& x, const S& opening_m) const {
   S supply_Pa = parameters.supply_pressure_Pa;
   if constexpr (kEffects) {
+    if (effects.laps()) {
+      constexpr double kLeast = 1e-150;  // no edge is open
+      const auto [ahead_m, back_m] = edges(opening_m);
+      const S to_in = in_side().orifice * ahead_m;
+      const S to_out = out_side().orifice * back_m;
+      const S share = to_out / max(to_in + to_out, S(kLeast));
+      const S port_Pa = (S(1.0) - share) * x.in_Pa + share * x.out_Pa;
+      return effects.supply_Pa(supply_Pa, port_Pa, to_in + to_out);
+    }
     const auto extends = opening_m >= S(0.0);
     const S flow = select(extends, in_side().orifice, out_side().orifice) * opening_m;
     supply_Pa = effects.supply_Pa(supply_Pa, select(extends, x.in_Pa, x.out_Pa), abs(flow));
@@ -66,19 +84,65 @@ PressuresOf<S> FourWayCylinder<S, Design>::pressures() const {
   return {inlet_Pa<true>(state, opening_m<true>(state)), state.in_Pa, state.out_Pa};
 }
 
+/// Flows of ports with both edges open near null; without underlap those of one edge, bit for bit.
+template <class S, class Design>
+typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::underlapped_flows(
+    const State& x, const S& opening_m) const {
+  const S supply_Pa = inlet_Pa<true>(x, opening_m);
+  const S return_Pa = parameters.return_pressure_Pa;
+  const auto [ahead_m, back_m] = edges(opening_m);
+  const S in_G = in_side().orifice;
+  const S out_G = out_side().orifice;
+  return {
+      in_G * ahead_m * root(supply_Pa - x.in_Pa) - in_G * back_m * root(x.in_Pa - return_Pa),
+      out_G * ahead_m * root(x.out_Pa - return_Pa) - out_G * back_m * root(supply_Pa - x.out_Pa)};
+}
+
+/// Part of an edge's flow that is left behind a throttle in series with it.
+template <class S, class Design>
+S FourWayCylinder<S, Design>::cushion_ratio(const S& edge, const S& throttle) {
+  constexpr double kLeast = 1e-300;  // both are shut
+  return throttle / sqrt(max(edge * edge + throttle * throttle, S(kLeast)));
+}
+
+/// What the end cushions let out of either chamber.
+template <class S, class Design>
+template <bool kEffects>
+void FourWayCylinder<S, Design>::throttle_ends(const State& x, const S& opening_m, Flows& q) const {
+  S open_m = abs(opening_m);
+  if (kEffects && effects.laps()) {
+    const auto [ahead_m, back_m] = edges(opening_m);
+    open_m = ahead_m + back_m;
+  }
+  const EndCushions<S>& c = derived_.cushions;
+  const S zero = 0.0;
+  const auto retracting = (x.y_m < c.retracted_m) & (q.in_m3ps < zero);
+  const auto extending = (parameters.stroke_m - x.y_m < c.extended_m) & (q.out_m3ps > zero);
+  const S in_ratio = cushion_ratio(in_side().orifice * open_m, c.retracted);
+  const S out_ratio = cushion_ratio(out_side().orifice * open_m, c.extended);
+  q.in_m3ps = q.in_m3ps * select(retracting, in_ratio, S(1.0));
+  q.out_m3ps = q.out_m3ps * select(extending, out_ratio, S(1.0));
+}
+
 template <class S, class Design>
 template <bool kEffects>
 typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::flows(const State& x) const {
   const Parameters& p = parameters;
   const S open_m = opening_m<kEffects>(x);
-  const auto extends = open_m >= S(0.0);
-  const S supply_Pa = inlet_Pa<kEffects>(x, open_m);
-  const S in_flow = in_side().orifice * open_m;
-  const S out_flow = out_side().orifice * open_m;
   Flows q;
-  q.in_m3ps = in_flow * root(select(extends, supply_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
-  q.out_m3ps =
-      out_flow * root(select(extends, x.out_Pa - p.return_pressure_Pa, supply_Pa - x.out_Pa));
+  if (kEffects && effects.laps()) {
+    q = underlapped_flows(x, open_m);
+  } else {
+    const auto extends = open_m >= S(0.0);
+    const S supply_Pa = inlet_Pa<kEffects>(x, open_m);
+    const S in_flow = in_side().orifice * open_m;
+    const S out_flow = out_side().orifice * open_m;
+    q.in_m3ps =
+        in_flow * root(select(extends, supply_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
+    q.out_m3ps =
+        out_flow * root(select(extends, x.out_Pa - p.return_pressure_Pa, supply_Pa - x.out_Pa));
+  }
+  if (derived_.cushioned) throttle_ends<kEffects>(x, open_m, q);
   if constexpr (kEffects) {
     const effects::Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa);
     q.in_m3ps = effects.flow_m3ps(q.in_m3ps) - leak.in_m3ps;

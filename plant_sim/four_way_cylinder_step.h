@@ -74,6 +74,9 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.step_s = step_s;
   derived_.in = Design::in_side(p);
   if constexpr (!Design::kEqualSides) derived_.out = Design::out_side(p);
+  derived_.cushions = Design::cushions(p);
+  derived_.cushioned =
+      !all(max(derived_.cushions.retracted_m, derived_.cushions.extended_m) <= S(0.0));
   derived_.most_orifice = max(in_side().orifice, out_side().orifice);
   derived_.valve_gain_m_per_V = spool.gain_m_per_V;
   derived_.two_zeta_wv = spool.two_zeta_wv_per_s;
@@ -94,15 +97,16 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
 }
 
-/// Largest opening that the step can come to.
+/// Largest opening that the step can come to; behind an underlap that of both edges of a port.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
   const S spool_m = max(abs(state.spool_m), derived_.valve_gain_m_per_V * abs(u_V)) +
                     abs(state.spool_mps) * S(derived_.step_s);
   if (!effects.any()) return spool_m;
   const S& gain = derived_.valve_gain_m_per_V;
-  return max(spool_m,
-             max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
+  const S opening_m = max(
+      spool_m, max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
+  return effects.laps() ? opening_m + S(2.0) * effects.underlap_m(gain) : opening_m;
 }
 
 /// The fastest that the rod can become within the step by the forces of effects.

@@ -32,6 +32,10 @@ struct DoubleRodDesign {
     S valve_gain_m_per_V = 2.79e-5;
     S valve_natural_frequency_rad_per_s = 628.0;
     S valve_damping_ratio = 0.70;
+    S retracted_cushion_length_m = 0.0;
+    S retracted_cushion_orifice_m2 = 1e-6;
+    S extended_cushion_length_m = 0.0;
+    S extended_cushion_orifice_m2 = 1e-6;
 
     template <class V>
     void visit(V&& v) {
@@ -59,12 +63,26 @@ struct DoubleRodDesign {
             valve_natural_frequency_rad_per_s, 0.07);
       field("valve_damping_ratio", "spool damping ratio zeta", 0.0, 10.0, 0.70, valve_damping_ratio,
             0.1);
+      field("retracted_cushion_length_m", "end cushion before the retracted stop; 0 is none", 0.0,
+            100.0, 0.0, retracted_cushion_length_m);
+      field("retracted_cushion_orifice_m2", "area of its throttle", 0.0, 1.0, 1e-6,
+            retracted_cushion_orifice_m2);
+      field("extended_cushion_length_m", "end cushion before the extended stop; 0 is none", 0.0,
+            100.0, 0.0, extended_cushion_length_m);
+      field("extended_cushion_orifice_m2", "area of its throttle", 0.0, 1.0, 1e-6,
+            extended_cushion_orifice_m2);
     }
   };
 
   static CylinderSide<S> in_side(const Parameters& p) {
     return {p.area_m2, p.dead_volume_m3,
             p.discharge_coefficient * p.area_gradient_m * sqrt(S(2.0) / p.density_kg_per_m3)};
+  }
+
+  static EndCushions<S> cushions(const Parameters& p) {
+    const S per_m2 = p.discharge_coefficient * sqrt(S(2.0) / p.density_kg_per_m3);
+    return {p.retracted_cushion_length_m, p.extended_cushion_length_m,
+            per_m2 * p.retracted_cushion_orifice_m2, per_m2 * p.extended_cushion_orifice_m2};
   }
 
   static SpoolDynamics<S> spool(const Parameters& p, double /*step_s*/) {

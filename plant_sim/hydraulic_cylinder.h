@@ -51,6 +51,10 @@ struct TwoAreaDesign {
     S valve_area_ratio = 1.0;
     S valve_bandwidth_Hz = 20.0;
     S valve_damping_ratio = 1.0;
+    S retracted_cushion_length_m = 0.0;
+    S retracted_cushion_flow_m3ps = 2e-5;
+    S extended_cushion_length_m = 0.0;
+    S extended_cushion_flow_m3ps = 2e-5;
 
     template <class V>
     void visit(V&& v) {
@@ -87,6 +91,14 @@ struct TwoAreaDesign {
             valve_bandwidth_Hz, 0.5);
       field("valve_damping_ratio", "spool damping ratio zeta; from 10 a first-order lag", 0.1,
             100.0, 1.0, valve_damping_ratio, 0.5);
+      field("retracted_cushion_length_m", "end cushion before the retracted stop; 0 is none", 0.0,
+            100.0, 0.0, retracted_cushion_length_m);
+      field("retracted_cushion_flow_m3ps", "flow that its throttle lets out at the rated drop", 0.0,
+            1.0, 2e-5, retracted_cushion_flow_m3ps);
+      field("extended_cushion_length_m", "end cushion before the extended stop; 0 is none", 0.0,
+            100.0, 0.0, extended_cushion_length_m);
+      field("extended_cushion_flow_m3ps", "flow that its throttle lets out at the rated drop", 0.0,
+            1.0, 2e-5, extended_cushion_flow_m3ps);
     }
   };
 
@@ -97,6 +109,12 @@ struct TwoAreaDesign {
 
   static CylinderSide<S> out_side(const Parameters& p) {
     return {p.rod_side_area_m2, p.rod_dead_volume_m3, in_side(p).orifice * p.valve_area_ratio};
+  }
+
+  static EndCushions<S> cushions(const Parameters& p) {
+    const S per_flow = S(1.0) / sqrt(p.rated_drop_Pa);
+    return {p.retracted_cushion_length_m, p.extended_cushion_length_m,
+            per_flow * p.retracted_cushion_flow_m3ps, per_flow * p.extended_cushion_flow_m3ps};
   }
 
   static SpoolDynamics<S> spool(const Parameters& p, double step_s) {

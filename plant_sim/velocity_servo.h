@@ -5,10 +5,10 @@
 // y  position, m     x  speed that the valve asks for, m/s     u  command, V
 // gain  m/s per V    tau  time constant, s; 0 is none
 // The quasi-static limit of the hydraulic actuator: pressures and mass follow at once. Effects act
-// on the command and on x (deadband, flow_asymmetry: x stands for the spool position, gain for its
-// travel per volt), and on the reading. There is no end of the stroke: position is relative.
-// Each step with the command held is solved exactly in x; what opening() makes of it is integrated
-// by Gauss's rule of two points.
+// on the command and on x (deadband, flow_asymmetry, underlap: x stands for the spool position,
+// gain for its travel per volt), and on the reading. There is no end of the stroke: position is
+// relative. Each step with the command held is solved exactly in x; what opening() makes of it is
+// integrated by Gauss's rule of two points.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class VelocityServo {
  public:
   static constexpr const char* kName = "velocity_servo";
   static constexpr std::array kSites = {effects::Site::command, effects::Site::opening,
-                                        effects::Site::sensor};
+                                        effects::Site::lap, effects::Site::sensor};
 
   struct Parameters {
     S gain_mps_per_V = 0.05;
@@ -100,9 +100,7 @@ class VelocityServo {
     effects.accept(state.y_m - from_m, speed_mps());
   }
 
-  [[nodiscard]] S speed_mps() const {
-    return effects.opening_m(state.drive_mps, parameters.gain_mps_per_V);
-  }
+  [[nodiscard]] S speed_mps() const { return opened(state.drive_mps); }
 
  private:
   static constexpr double kDrive_mps = 1e6;  ///< the largest gain at the largest command
@@ -112,10 +110,15 @@ class VelocityServo {
     return exp(-min(S(time_s) / max(parameters.time_constant_s, S(1e-12)), S(700.0))) *
            select(parameters.time_constant_s > S(0.0), S(1.0), S(0.0));
   }
-  /// Contribution of the effects to a linear valve.
-  S bent(const S& drive_mps) const {
-    return effects.opening_m(drive_mps, parameters.gain_mps_per_V) - drive_mps;
+  /// Speed behind the valve's openings; an underlapped port's is the net one of its two edges.
+  S opened(const S& drive_mps) const {
+    const S x = effects.opening_m(drive_mps, parameters.gain_mps_per_V);
+    if (!effects.laps()) return x;
+    const S lap = effects.underlap_m(parameters.gain_mps_per_V);
+    return x + clamp(x, -lap, lap);
   }
+  /// Contribution of the effects to a linear valve.
+  S bent(const S& drive_mps) const { return opened(drive_mps) - drive_mps; }
 
   double step_s_ = 0.0;
   S early_, late_, whole_;

@@ -18,11 +18,17 @@ constexpr std::array<std::string_view, 1> kActuatorScale{"area_m2"};
 constexpr std::array<std::string_view, 2> kCylinderScale{"cap_area_m2", "rod_side_area_m2"};
 // spool travel in metres stands for a flow on hydraulic_actuator; on hydraulic_cylinder the rated
 // flow does, at a travel of its own
-constexpr std::array<std::string_view, 5> kActuatorFlows{
-    "valve_gain_m_per_V", "dead_volume_m3", "conductance_m3ps_per_Pa", "limit_m3ps", "rate_mps"};
-constexpr std::array<std::string_view, 5> kCylinderFlows{"rated_flow_m3ps", "cap_dead_volume_m3",
-                                                         "rod_dead_volume_m3",
-                                                         "conductance_m3ps_per_Pa", "limit_m3ps"};
+constexpr std::array<std::string_view, 7> kActuatorFlows{"valve_gain_m_per_V",
+                                                         "dead_volume_m3",
+                                                         "conductance_m3ps_per_Pa",
+                                                         "limit_m3ps",
+                                                         "rate_mps",
+                                                         "retracted_cushion_orifice_m2",
+                                                         "extended_cushion_orifice_m2"};
+constexpr std::array<std::string_view, 7> kCylinderFlows{
+    "rated_flow_m3ps",           "cap_dead_volume_m3", "rod_dead_volume_m3",
+    "conductance_m3ps_per_Pa",   "limit_m3ps",         "retracted_cushion_flow_m3ps",
+    "extended_cushion_flow_m3ps"};
 constexpr std::array<std::string_view, 1> kInverse{"droop_Pa_per_m3ps"};
 
 struct ScaledPlant {

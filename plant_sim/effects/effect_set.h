@@ -38,6 +38,18 @@ class EffectSet : public EffectStore<S, E...> {
     return apply_formulas<Site::opening>(x_m);
   }
 
+  /// True when edges of the valve are open at null.
+  [[nodiscard]] bool laps() const { return this->acts_on(Site::lap); }
+
+  /// Opening of every edge of the valve at null.
+  [[nodiscard]] S underlap_m(const S& gain_m_per_V) const {
+    S sum = 0.0;
+    this->template for_each_active<Site::lap>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      sum += T::underlap_m(p, gain_m_per_V);
+    });
+    return sum;
+  }
+
   [[nodiscard]] S supply_Pa(S supply_Pa, const S& port_Pa, const S& flow) const {
     this->template for_each_active<Site::supply>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       supply_Pa = T::supply_Pa(p, supply_Pa, port_Pa, flow);

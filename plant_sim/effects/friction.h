@@ -12,7 +12,7 @@
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
 // sliding asks for no shorter step. Both dissipate: F v >= 0,
 // or k z^2 / 2 is what is stored; for that s1 z' against v, where Stribeck's level falls below k z,
-// is at least -(k z)^2 / g. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
+// is at least -k z: the bristle's damping never drives. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
 // Lischinsky, A new model for control of systems with friction (1995); Barabanov, Ortega, Necessary
 // and sufficient conditions for passivity of the LuGre friction model (2000); Armstrong-Helouvry,
 // Dupont, Canudas de Wit (1994).
@@ -89,7 +89,7 @@ struct Friction {
     const S level = max(select(at.v_mps < S(0.0), backward_N, forward_N), S(kLeastLevel_N));
     const S ratio = along_N / level;
     const S damped_N = p.presliding_damping_N_s_per_m * abs(at.v_mps) * (S(1.0) - ratio);
-    const S total_N = along_N + max(damped_N, -level * ratio * ratio);
+    const S total_N = along_N + max(damped_N, -along_N * min(ratio, S(1.0)));
     const S bristle_N = select(at.v_mps < S(0.0), -total_N, total_N);
     return select(bristled, bristle_N, rigid_N);
   }

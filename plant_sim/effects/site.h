@@ -5,6 +5,7 @@
 //   command       S command_V(p, memory, u_V)                once per step, may remember
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
+//   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null
 //   supply        S supply_Pa(p, supply_Pa, port_Pa, flow)   pressure ahead of the open orifice;
 //                                                            flow: its m3/s per sqrt(Pa)
 //   flow          S flow_m3ps(p, flow_m3ps)                  of one orifice
@@ -35,6 +36,7 @@ enum class Site : unsigned {
   command,
   spool,
   opening,
+  lap,
   supply,
   flow,
   leakage,
@@ -47,9 +49,9 @@ enum class Site : unsigned {
 };
 
 inline const char* site_name(Site site) {
-  constexpr const char* kNames[] = {"command", "spool",        "opening",      "supply",
-                                    "flow",    "leakage",      "bulk_modulus", "inertia",
-                                    "force",   "dry_friction", "sensor",       "coupling"};
+  constexpr const char* kNames[] = {"command",      "spool",   "opening",      "lap",     "supply",
+                                    "flow",         "leakage", "bulk_modulus", "inertia", "force",
+                                    "dry_friction", "sensor",  "coupling"};
   return kNames[static_cast<unsigned>(site)];
 }
 

@@ -22,6 +22,7 @@
 #include "plant_sim/effects/spool_rate_limit.h"
 #include "plant_sim/effects/supply_droop.h"
 #include "plant_sim/effects/transport_delay.h"
+#include "plant_sim/effects/underlap.h"
 #include "plant_sim/effects/valve_hysteresis.h"
 
 namespace plant_sim::effects {
@@ -34,6 +35,7 @@ using Effects = EffectSet<S,                 //
                           SpoolRateLimit,    //
                           Deadband,          //
                           FlowAsymmetry,     //
+                          Underlap,          //
                           FlowSaturation,    //
                           SupplyDroop,       //
                           InternalLeakage,   //

@@ -7,6 +7,7 @@ import pathlib
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 # Bore and rod 50/32 mm, valve 40 l/min at 35 bar an edge and 10 V, spool in volts.
 A1, A2 = np.pi / 4 * 0.05 ** 2, np.pi / 4 * (0.05 ** 2 - 0.032 ** 2)
@@ -15,6 +16,10 @@ PLAIN = dict(m=200.0, d=3000.0, beta=1.2e9, V1=2e-4, V2=3e-4, L=0.5, ps=14e6, pt
 # a lift, with a spool cut for unequal areas, leakages, droop, air, a load and a spring
 FULL = dict(PLAIN, r=0.6, angle=0.5, internal=5e-12, external=2e-12, droop=5e9, air=0.01,
             force=1500.0, spring=2e4, rest=0.2)
+# edges that are open by 0.15 V at null
+LAPPED = dict(PLAIN, r=0.6, lap=0.15, force=1500.0)
+# throttles of the end cushions, flow at pn; both act along the whole stroke
+CUSHIONED = dict(PLAIN, retracted=1e-4, extended=8e-5, force=8000.0)
 SCALE = np.array([1e-3, 1e-2, 1e6, 1e6, 1.0, 1e3])
 
 
@@ -29,6 +34,27 @@ def drawn(k, ps, port, droop):
     return q
 
 
+def throttled(k, drop, throttle):
+    """Flow out through an edge behind a throttle: the pressure between them, by bisection."""
+    if throttle is None or drop <= 0 or k == 0:
+        return k * np.sign(drop) * np.sqrt(abs(drop))
+    g = throttle / np.sqrt(PLAIN["pn"])
+    behind = brentq(lambda p: k * np.sqrt(p) - g * np.sqrt(drop - p), 0.0, drop, xtol=1e-9,
+                    rtol=1e-14)
+    return k * np.sqrt(behind)
+
+
+def underlapped(s, p1, p2, of):
+    """Flows of the four edges, each by itself, into chamber 1 and out of chamber 2."""
+    def edge(open_V, drop):
+        k = of["qn"] / np.sqrt(of["pn"]) * max(open_V, 0.0) / of["un"]
+        return k * np.sign(drop) * np.sqrt(abs(drop))
+
+    lap, r = of["lap"], of["r"]
+    return (edge(lap + s, of["ps"] - p1) - edge(lap - s, p1 - of["pt"]),
+            r * edge(lap + s, p2 - of["pt"]) - r * edge(lap - s, of["ps"] - p2))
+
+
 def modulus(p, of):
     absolute = p + 1.01e5
     x = of.get("air", 0.0) * (1.01e5 / absolute) ** (1 / 1.4)
@@ -39,7 +65,16 @@ def rate(_, x, u, of):
     y, v, p1, p2, s, sv = x
     k = of["qn"] / np.sqrt(of["pn"]) * abs(s) / of["un"]
     droop = of.get("droop", 0.0)
-    if s >= 0:
+    if "lap" in of:
+        q1, q2 = underlapped(s, p1, p2, of)
+    elif "retracted" in of:
+        if s >= 0:
+            q1 = -throttled(k, p1 - of["ps"], of["retracted"])
+            q2 = throttled(k, p2 - of["pt"], of["extended"])
+        else:
+            q1 = -throttled(k, p1 - of["pt"], of["retracted"])
+            q2 = throttled(k, p2 - of["ps"], of["extended"])
+    elif s >= 0:
         q1, q2 = drawn(k, of["ps"], p1, droop), of["r"] * k * np.sqrt(p2 - of["pt"])
     else:
         q1, q2 = -k * np.sqrt(p1 - of["pt"]), -drawn(of["r"] * k, of["ps"], p2, droop)
@@ -77,7 +112,8 @@ def open_loop(of, volts):
 def main():
     lines = ["case,t_s,u_V,y_m,v_mps,pressure_in_Pa,pressure_out_Pa,spool_V,spool_Vps"]
     volts = [1.0, -1.0, 0.5, 2.0, 0.5, -1.5, 1.0]
-    for name, of in (("plain", PLAIN), ("full", FULL)):
+    for name, of in (("plain", PLAIN), ("full", FULL), ("lapped", LAPPED),
+                     ("cushioned", CUSHIONED)):
         for row in open_loop(of, volts):
             lines.append(name + "," + ",".join(f"{value:.15g}" for value in row))
     pathlib.Path(__file__).with_name("cylinder_reference.csv").write_text("\n".join(lines) + "\n")

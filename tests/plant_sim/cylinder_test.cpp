@@ -343,5 +343,25 @@ TEST(HydraulicCylinder, FollowsSciPyOnAnInclinedAxisWithEffectsOnBothSides) {
   expect_as_scipy("full", plant, 2.5e-5);
 }
 
+TEST(HydraulicCylinder, FollowsSciPyBehindAnUnderlappedValveOfTwoOpenings) {
+  Cylinder plant;
+  plant.parameters = reference_rig();
+  plant.parameters.valve_area_ratio = 0.6;
+  set_effect(plant, "underlap", "half_width_V", 0.15);
+  set_effect(plant, "load_force", "force_N", 1500.0);
+  expect_as_scipy("lapped", plant, 2.5e-5);
+}
+
+TEST(HydraulicCylinder, FollowsSciPyWithinItsEndCushions) {
+  Cylinder plant;
+  plant.parameters = reference_rig();
+  plant.parameters.retracted_cushion_length_m = 0.5;
+  plant.parameters.retracted_cushion_flow_m3ps = 1e-4;
+  plant.parameters.extended_cushion_length_m = 0.5;
+  plant.parameters.extended_cushion_flow_m3ps = 8e-5;
+  set_effect(plant, "load_force", "force_N", 8000.0);
+  expect_as_scipy("cushioned", plant, 2.5e-5);
+}
+
 }  // namespace
 }  // namespace plant_sim::testing

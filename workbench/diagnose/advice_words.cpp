@@ -164,7 +164,7 @@ std::string words_for_motion(const std::vector<std::string>& names, const std::s
 std::string words_for_sensor(const plant_sim::ModelFile& model,
                              const std::vector<std::string>& names) {
   std::string sensor = "the chamber pressures would";
-  if (all_at(model, names, {"command", "spool", "opening"})) {
+  if (all_at(model, names, {"command", "spool", "opening", "lap"})) {
     sensor = "the spool position would";
   } else if (all_at(model, names, {"force", "dry_friction", "inertia"})) {
     sensor = "a load cell at the rod would";

@@ -124,10 +124,7 @@ class Dictionary {
     const auto oil = plant_sim::hydraulics_of(model);
     const double* const servo = model.value("gain_mps_per_V");
     if (!oil && servo == nullptr) return;
-    const bool is_speed = !oil;
-    const double full =
-        rounded((is_speed ? *servo : oil->valve_gain_m_per_V) * rig_.most_command_V);
-    const std::string lap = is_speed ? "lap_mps" : "lap_m";
+    const double full = rounded((oil ? oil->valve_gain_m_per_V : *servo) * rig_.most_command_V);
     add("gain_curvature", "gain that changes with the square of the opening", "opening",
         fmt::format("x_m * (1 + curvature_ratio * (x_m / {})^2)", full),
         {size("curvature_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
@@ -138,9 +135,6 @@ class Dictionary {
         fmt::format("x_m * (1 + slope_ratio * x_m / {})", full),
         {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)},
         {"u", "direction"});
-    add("underlap", "twice the gain about the null: an underlapped spool", "opening",
-        fmt::format("x_m + sign(x_m) * min(abs(x_m), {})", lap),
-        {size(lap, kTypicalRatio * full, Sign::positive, 1.0 / kTypicalRatio)}, {"u"});
   }
 
   void add_commands() {

@@ -50,6 +50,8 @@ conductance_m3ps_per_Pa = 3e-12
 conductance_m3ps_per_Pa = 2e-12
 [effects.supply_droop]
 droop_Pa_per_m3ps = 5e9
+[effects.underlap]
+half_width_V = 0.1
 )";
 
 ModelFile model(const std::string& plant, const std::string& rest) {
@@ -63,11 +65,15 @@ std::vector<ModelFile> models() {
       model("force_driven_axis", kEffects),
       model("hydraulic_actuator", kEffects + flows +
                                       "[effects.flow_saturation]\nlimit_m3ps = 1.2e-4\n"
-                                      "[effects.spool_rate_limit]\nrate_mps = 4e-3\n"),
+                                      "[effects.spool_rate_limit]\nrate_mps = 4e-3\n"
+                                      "[parameters]\nretracted_cushion_length_m = 0.4\n"
+                                      "extended_cushion_length_m = 0.4\n"),
       model("hydraulic_cylinder", kEffects + flows +
                                       "[effects.flow_saturation]\nlimit_m3ps = 2e-4\n"
                                       "[effects.spool_rate_limit]\nrate_mps = 0.008\n"
-                                      "[parameters]\ninclination_rad = 0.4\n"),
+                                      "[parameters]\ninclination_rad = 0.4\n"
+                                      "retracted_cushion_length_m = 0.3\n"
+                                      "extended_cushion_length_m = 0.3\n"),
   };
 }
 
