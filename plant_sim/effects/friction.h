@@ -12,10 +12,10 @@
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
 // sliding asks for no shorter step. Both dissipate: F v >= 0,
 // or k z^2 / 2 is what is stored; for that s1 z' against v, where Stribeck's level falls below k z,
-// is at least -k z: the bristle's damping never drives. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
-// Lischinsky, A new model for control of systems with friction (1995); Barabanov, Ortega, Necessary
-// and sufficient conditions for passivity of the LuGre friction model (2000); Armstrong-Helouvry,
-// Dupont, Canudas de Wit (1994).
+// is at least -k z: the bristle's damping never drives. Sources: Karnopp (1985); Dahl (1968);
+// Canudas de Wit, Olsson, Astrom, Lischinsky, A new model for control of systems with friction
+// (1995); Barabanov, Ortega, Necessary and sufficient conditions for passivity of the LuGre
+// friction model (2000); Armstrong-Helouvry, Dupont, Canudas de Wit (1994).
 #pragma once
 
 #include <array>

@@ -166,6 +166,26 @@ TEST(TruthEffects, ReadThroughPlayAndAnEccentricWheel) {
               5e-5 * std::sin(2.0 * 3.14159265358979 * rig.x[0] / 0.02 + 0.3), 1e-12);
 }
 
+// A closed valve whose edges are open by U lets a load F move the rod at A v = c U (sqrt(Ps - F/A)
+// - sqrt(Ps + F/A)), c = Cd w/sqrt(rho): by repeated substitution, F with the viscous force.
+TEST(TruthLeftOut, LetsALoadMoveTheRodPastAnOpenCentre) {
+  Hidden hidden;
+  hidden.force_N = 1500.0;
+  const Plant p;
+  const double c = p.discharge_coefficient * p.area_gradient_m * p.valve_gain_m_per_V * 0.2 /
+                   std::sqrt(p.density_kg_per_m3);
+  double v = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double load_Pa = (1500.0 + p.damping_N_s_per_m * v) / p.area_m2;
+    v = c *
+        (std::sqrt(p.supply_pressure_Pa - load_Pa) - std::sqrt(p.supply_pressure_Pa + load_Pa)) /
+        p.area_m2;
+  }
+  EXPECT_LT(v, -1e-3);
+  const LeftOut left{LeftOut::Kind::open_centre, 0.2, 0.0};
+  EXPECT_NEAR(settled(hidden, 0.0, p, left).x[1], v, 1e-3 * std::abs(v));
+}
+
 TEST(TruthLeftOut, ResistsWithTheCubeOfTheSpeed) {
   const LeftOut cubic{LeftOut::Kind::cubic_damping, 2.5e5, 0.0};
   const double expected = steady_mps(2.0, [](double v) { return 2.5e5 * v * v * v; });

@@ -222,11 +222,26 @@ const std::vector<LeftOutInfo>& axis_left_out_table() {
   return table;
 }
 
+const std::vector<LeftOutInfo>& library_law_table() {
+  static const std::vector<LeftOutInfo> table{
+      {Kind::open_centre,
+       "open_centre",
+       "underlap of the library: four edges, each open by s at null, V",
+       0.12,
+       0,
+       0,
+       {"flow", "gain"},
+       {"u"},
+       {"v", "speed", "direction"}},
+  };
+  return table;
+}
+
 namespace {
 
 template <class Matches>
 const LeftOutInfo* find_where(const Matches& matches) {
-  for (const auto* table : {&left_out_table(), &axis_left_out_table()}) {
+  for (const auto* table : {&left_out_table(), &axis_left_out_table(), &library_law_table()}) {
     for (const LeftOutInfo& info : *table) {
       if (matches(info)) return &info;
     }

@@ -32,6 +32,7 @@ struct LeftOut {
     position_gain,
     load_step,
     elastic_shaft,
+    open_centre,
   };
   Kind kind = Kind::none;
   double size = 0.0;   ///< unit by kind
@@ -60,7 +61,9 @@ struct LeftOutInfo {
 const std::vector<LeftOutInfo>& left_out_table();
 /// Those of the electric axes (axis.h).
 const std::vector<LeftOutInfo>& axis_left_out_table();
-/// In either table; null when there is none of that name or kind.
+/// Laws that the library has by another equation, written apart from it; in no plan.
+const std::vector<LeftOutInfo>& library_law_table();
+/// In any table; null when there is none of that name or kind.
 const LeftOutInfo* find_left_out(const std::string& name);
 const LeftOutInfo* find_left_out(LeftOut::Kind kind);
 

@@ -44,7 +44,8 @@ void list() {
     std::printf("%s.%s\n", parameter.effect.c_str(), parameter.name.c_str());
   }
   for (const std::string& motion : truth::motions()) std::printf("motion=%s\n", motion.c_str());
-  for (const auto* table : {&truth::left_out_table(), &truth::axis_left_out_table()}) {
+  for (const auto* table :
+       {&truth::left_out_table(), &truth::axis_left_out_table(), &truth::library_law_table()}) {
     for (const truth::LeftOutInfo& info : *table) {
       std::printf("left_out=%s  %s, typically %g\n", info.name.c_str(), info.equation.c_str(),
                   info.typical);

@@ -96,8 +96,9 @@ def score_rod(record, verdict, named, groups):
     return "group" if held and inside and len(claimed) <= len(truth) else "no"
 
 
-def score_law(record, verdict, answer):
-    """The verdict on a law that the library does not have, and where it was looked for."""
+def score_law(record, verdict, answer, named):
+    """The verdict on a law that the library does not have, or has by another equation under the
+    same name, and where it was looked for."""
     left_out = record["left_out"]
     first = (answer.get("where") or [])[:2]
     result = {"where": [f"{where.get('class')}/{where.get('variable')}" for where in first]}
@@ -106,7 +107,8 @@ def score_law(record, verdict, answer):
     result["similar"] = result["variable"] or any(
         name in left_out["same_signal"] for name in variables)
     result["class"] = any(where.get("class") in left_out["classes"] for where in first)
-    result["told"] = verdict in TOLD
+    result["named"] = verdict == "missing" and named == [left_out["name"]]
+    result["told"] = verdict in TOLD or result["named"]
     return result
 
 
@@ -120,10 +122,13 @@ def score(plan, record, answer):
     claims = verdict in ("missing", "undetermined")
     if record.get("left_out"):
         result["truth"] = [record["left_out"]["name"]]
-        result.update(score_law(record, verdict, answer))
-        result["wrong"] = claims and bool(named)
+        law = score_law(record, verdict, answer, named)
+        law_named = law.pop("named")
+        result.update(law)
+        result["wrong"] = claims and bool(named) and not law_named
         if plan == "leftout":
-            result["right"] = "yes" if verdict in ("unexplained", "learned") else "no"
+            told = verdict in ("unexplained", "learned") or law_named
+            result["right"] = "yes" if told else "no"
         elif verdict != "failed":
             result["right"] = "no" if result["wrong"] else "yes"
         return result

@@ -48,6 +48,21 @@ TEST(HiddenEffect, ADeadBandIsNamedWithItsWidth) {
   expect_found(judged("motion=multisine,length_s=12,deadband.half_width_V=0.2", 12));
 }
 
+// The law of four edges stands among those left out: it is in no plan.
+TEST(HiddenEffect, AnUnderlapIsNamedWithItsHalfWidth) {
+  const Judged j =
+      judged("motion=multisine,length_s=12,left_out=open_centre,left_out.size=0.12", 17);
+  const selection::Diagnosis& d = j.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
+  EXPECT_THAT(d.missing, testing::ElementsAre("underlap")) << said(d);
+  EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m) << said(d);
+  EXPECT_GE(d.rms_before_m, diagnose_test::kVisible * d.noise_floor_m) << said(d);
+  const auto width = std::find_if(d.parameters.begin(), d.parameters.end(),
+                                  [](const auto& p) { return p.name == "underlap.half_width_V"; });
+  ASSERT_NE(width, d.parameters.end());
+  EXPECT_NEAR(width->value, 0.12, diagnose_test::kStdErrors * width->std_error);
+}
+
 TEST(HiddenEffect, ANullBiasIsNamedWithItsSignOnAMismatchedPlant) {
   expect_found(judged("motion=multisine,length_s=12,mismatched=1,null_bias.offset_V=-0.07", 13));
 }
