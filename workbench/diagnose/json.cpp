@@ -4,6 +4,7 @@
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/held_scale.h"
+#include "workbench/diagnose/learned_curves.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/held_scale_json.h"
@@ -96,22 +97,48 @@ ordered_json disturbance_of(const selection::Diagnosis& d) {
   return json;
 }
 
-ordered_json laws_of(const selection::Diagnosis& d) {
+ordered_json numbers_of(const std::vector<double>& values) {
+  ordered_json list = ordered_json::array();
+  for (const double value : values) list.push_back(number_or_null(value));
+  return list;
+}
+
+ordered_json curve_of(const greybox::LawCurve& curve) {
+  ordered_json json;
+  json["variable"] = curve.variable;
+  json["quantity"] = curve.quantity;
+  json["held"] = curve.held ? ordered_json({{curve.held->variable, curve.held->value}})
+                            : ordered_json::object();
+  json["x"] = numbers_of(curve.x);
+  json["f"] = numbers_of(curve.f);
+  json["std_error"] = numbers_of(curve.std_error);
+  json["share"] = numbers_of(curve.share);
+  return json;
+}
+
+ordered_json laws_of(const DiagnosisReport& outcome) {
   ordered_json laws = ordered_json::array();
-  for (const selection::Law& law : d.laws) {
+  for (const LearnedLaw& learned : learned_laws(outcome)) {
+    const plant_sim::formula::FormulaEffect& effect = learned.law->effect;
     ordered_json parameters = ordered_json::object();
-    for (const selection::ParameterValue& p : d.parameters) {
-      if (p.name.rfind(law.effect.name + ".", 0) != 0) continue;
-      parameters[p.name.substr(law.effect.name.size() + 1)] = {
-          {"value", number_or_null(p.value)}, {"std_error", number_or_null(p.std_error)}};
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const auto& declared = effect.parameters[i];
+      parameters[declared.name] = {{"value", number_or_null(learned.parameters[i].value)},
+                                   {"std_error", number_or_null(learned.parameters[i].std_error)},
+                                   {"what", declared.what},
+                                   {"min", declared.min},
+                                   {"max", declared.max},
+                                   {"typical", declared.typical},
+                                   {"neutral", declared.neutral}};
     }
-    laws.push_back({{"name", law.effect.name},
-                    {"what", law.effect.what},
-                    {"site", law.effect.site},
-                    {"variables", law.variables},
-                    {"formula", law.effect.formula},
+    laws.push_back({{"name", effect.name},
+                    {"what", effect.what},
+                    {"site", effect.site},
+                    {"variables", learned.law->variables},
+                    {"formula", effect.formula},
                     {"parameters", parameters},
-                    {"rms_heldout_m", number_or_null(d.rms_after_m)}});
+                    {"rms_heldout_m", number_or_null(outcome.diagnosis.rms_after_m)},
+                    {"curve", curve_of(learned.curve)}});
   }
   return laws;
 }
@@ -157,7 +184,7 @@ std::string to_json(const DiagnosisReport& outcome) {
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
   }
   json["changing"] = changing_of(d);
-  json["laws"] = laws_of(d);
+  json["laws"] = laws_of(outcome);
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},

@@ -63,6 +63,31 @@ TEST(DiagnosisJson, MissingNumbersAreNull) {
   EXPECT_TRUE(j["candidates"].empty());
 }
 
+TEST(DiagnosisJson, ALawHasItsCurveAndWhatItsBlockNeeds) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.better = plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/force_driven_axis.toml");
+  const plant_sim::formula::FormulaEffect effect{
+      "cubic_damping", "force", "c * v_mps^3", "drag", {{"c", "size", 0.0, 1e6, 1e3, 0.0}}};
+  d.better.declare(effect, "test");
+  *d.better.value("cubic_damping.c") = 800.0;
+  d.verdict = selection::Verdict::learned;
+  d.laws = {{effect, {"v"}}};
+  d.parameters = {{"cubic_damping.c", 800.0, 4.0, false}};
+  const json law = json::parse(to_json(outcome))["laws"][0];
+  EXPECT_EQ(law["parameters"]["c"],
+            json::parse(R"({"value": 800.0, "std_error": 4.0, "what": "size", "min": 0.0,
+                            "max": 1e6, "typical": 1e3, "neutral": 0.0})"));
+  const json& curve = law["curve"];
+  EXPECT_EQ(curve["variable"], "v_mps");
+  EXPECT_EQ(curve["quantity"], "force_N");
+  ASSERT_EQ(curve["x"].size(), curve["f"].size());
+  ASSERT_EQ(curve["x"].size(), curve["std_error"].size());
+  const double v_mps = curve["x"][3];
+  EXPECT_NEAR(curve["f"][3], 800.0 * std::pow(v_mps, 3), 1e-6);
+  EXPECT_NEAR(curve["std_error"][3], 4.0 * std::abs(std::pow(v_mps, 3)), 1e-6);
+}
+
 TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
   ExampleReport outcome;
   outcome.input.output = "better.toml";

@@ -1,0 +1,276 @@
+#include "estimator/greybox/law_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "config/signals/nan.h"
+#include "estimator/greybox/kinematics.h"
+#include "estimator/nonlinear/covariance.h"
+#include "plant_sim/formula/formula.h"
+#include "plant_sim/hydraulics.h"
+
+namespace estimator::greybox {
+namespace {
+
+using config::signals::kNaN;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using plant_sim::formula::FormulaView;
+using Evaluator = plant_sim::formula::ExpressionEvaluator<double>;
+
+constexpr std::size_t kPoints = 61;
+/// Difference step of a parameter, relative to its size.
+constexpr double kStep = 1e-6;
+
+/// Samples of a variable over all records; empty: none shows it.
+using Samples = std::vector<double>;
+
+template <class F>
+Samples counted(const FitDataset& data, F&& of_record) {
+  Samples all;
+  for (const Dataset& record : data.records) {
+    const std::vector<double> values = of_record(record);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (record.valid[k] != 0) all.push_back(values[k]);
+    }
+  }
+  return all;
+}
+
+/// The opening that follows the command at once; the spool itself is not measured.
+double opening_per_V(const plant_sim::ModelFile& model) {
+  plant_sim::ModelFile copy = model;
+  const std::optional<plant_sim::Hydraulics> oil = plant_sim::hydraulics_of(copy);
+  if (oil) return oil->valve_gain_m_per_V;
+  const double* const servo = copy.value("gain_mps_per_V");
+  return servo == nullptr ? 1.0 : *servo;
+}
+
+Samples samples_of(const plant_sim::ModelFile& model, const FitDataset& data,
+                   std::string_view variable) {
+  if (variable == "y_m") return counted(data, [](const Dataset& r) { return r.y_m; });
+  if (variable == "u_V") return counted(data, [](const Dataset& r) { return r.u_V; });
+  if (variable == "v_mps") {
+    const double noise_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
+    return counted(data, [&](const Dataset& r) { return kinematics(r, noise_m).speed_mps; });
+  }
+  if (variable != "x_m") return {};
+  const double gain = opening_per_V(model);
+  return counted(data, [&](const Dataset& r) {
+    std::vector<double> opening = r.u_V;
+    for (double& value : opening) value *= gain;
+    return opening;
+  });
+}
+
+double mean(const Samples& values) {
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())).mean();
+}
+
+double root_mean_square(const Samples& values) {
+  const Eigen::Map<const VectorXd> all(values.data(), static_cast<Index>(values.size()));
+  return std::sqrt(all.squaredNorm() / static_cast<double>(values.size()));
+}
+
+const char* quantity_of(const plant_sim::ModelFile& model, plant_sim::effects::Site site) {
+  using plant_sim::effects::Site;
+  switch (site) {
+    case Site::command:
+      return "command_V";
+    case Site::opening:
+      return plant_sim::hydraulics_of(model) ? "opening_m" : "opening_mps";
+    case Site::flow:
+      return "flow_m3ps";
+    case Site::leakage:
+      return "leakage_m3ps";
+    case Site::force:
+      return "force_N";
+    default:
+      return "reading_m";
+  }
+}
+
+/// A formula with its values, over the one or the other of its variables.
+class Law {
+ public:
+  Law(const FormulaView& formula, std::vector<double> values, std::size_t over)
+      : formula_(formula),
+        place_(*plant_sim::formula::find_formula_site(plant_sim::effects::site_name(formula.site))),
+        values_(std::move(values)),
+        over_(over),
+        run_(formula.program) {
+    run_.set_parameters(values_.data());
+  }
+
+  [[nodiscard]] const plant_sim::formula::FormulaSite& place() const { return place_; }
+  [[nodiscard]] plant_sim::formula::VariableRange range(std::size_t variable) const {
+    return formula_.ranges[variable];
+  }
+  /// What it adds at its site.
+  [[nodiscard]] double operator()(double x, double held) const {
+    const double first = over_ == 0 ? x : held;
+    const double second = over_ == 0 ? held : x;
+    return run_(first, second) - (place_.chained ? first : 0.0);
+  }
+  /// d f / d parameters over the whole grid, points x parameters.
+  [[nodiscard]] MatrixXd slopes(const std::vector<double>& x, double held) {
+    MatrixXd all(static_cast<Index>(x.size()), static_cast<Index>(values_.size()));
+    for (std::size_t p = 0; p < values_.size(); ++p) {
+      const double at = values_[p];
+      const double step = kStep * std::max(std::abs(at), std::abs(formula_.parameters[p].typical));
+      const VectorXd above = with(p, at + step, x, held);
+      const VectorXd below = with(p, at - step, x, held);
+      all.col(static_cast<Index>(p)) = (above - below) / (2.0 * step);
+      values_[p] = at;
+    }
+    run_.set_parameters(values_.data());
+    return all;
+  }
+
+ private:
+  VectorXd with(std::size_t p, double value, const std::vector<double>& x, double held) {
+    values_[p] = value;
+    run_.set_parameters(values_.data());
+    VectorXd f(static_cast<Index>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) f[static_cast<Index>(i)] = (*this)(x[i], held);
+    return f;
+  }
+
+  FormulaView formula_;
+  plant_sim::formula::FormulaSite place_;
+  std::vector<double> values_;
+  std::size_t over_;
+  Evaluator run_;
+};
+
+std::vector<double> grid(double low, double high) {
+  std::vector<double> x(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(kPoints - 1);
+    x[i] = low + share * (high - low);
+  }
+  return x;
+}
+
+/// Share of the samples nearest to each point of the grid.
+std::vector<double> shares(const Samples& samples, const std::vector<double>& x) {
+  std::vector<double> share(x.size(), 0.0);
+  const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
+  if (!(step > 0.0)) return share;
+  for (const double value : samples) {
+    const auto cell = static_cast<std::size_t>(std::lround((value - x.front()) / step));
+    share[std::min(cell, x.size() - 1)] += 1.0 / static_cast<double>(samples.size());
+  }
+  return share;
+}
+
+std::vector<double> errors_of(const MatrixXd& slopes, const VectorXd& errors,
+                              const MatrixXd& covariance) {
+  const VectorXd known = errors.unaryExpr([](double e) { return std::isnan(e) ? 0.0 : e; });
+  std::vector<double> out(static_cast<std::size_t>(slopes.rows()), kNaN);
+  if (known.maxCoeff() == 0.0) return out;
+  for (Index i = 0; i < slopes.rows(); ++i) {
+    const double bound = slopes.row(i).cwiseAbs().dot(known);
+    const double square = covariance.size() == 0
+                              ? bound * bound
+                              : (slopes.row(i) * covariance * slopes.row(i).transpose()).value();
+    out[static_cast<std::size_t>(i)] = std::sqrt(std::max(square, 0.0));
+  }
+  return out;
+}
+
+double held_value(const plant_sim::ModelFile& model, const FitDataset& data, const Law& law,
+                  std::size_t variable) {
+  const std::string name = law.place().variables[variable];
+  if (name.empty()) return 0.0;
+  const Samples samples = samples_of(model, data, name);
+  if (samples.empty()) return 0.5 * (law.range(variable).min + law.range(variable).max);
+  return name == "v_mps" ? root_mean_square(samples) : mean(samples);
+}
+
+const FormulaView* formula_named(const plant_sim::formula::Formulas& all, std::string_view name) {
+  const FormulaView* const end = all.data() + all.size();
+  const FormulaView* const found =
+      std::find_if(all.data(), end, [&](const FormulaView& one) { return name == one.name; });
+  return found == end ? nullptr : found;
+}
+
+std::vector<double> values_of(const plant_sim::ModelFile& model, std::string_view effect) {
+  std::vector<double> values;
+  for (const plant_sim::ModelFile::Effect& entry : model.effects) {
+    if (entry.name != effect) continue;
+    for (const plant_sim::NamedValue& p : entry.parameters) values.push_back(p.value);
+  }
+  return values;
+}
+
+}  // namespace
+
+MatrixXd covariance_of(const FitDataset& data, const FitSummary& fitted,
+                       const std::vector<std::string>& names, const VectorXd& errors) {
+  if (fitted.jacobian.cols() != fitted.theta.size() || fitted.jacobian.rows() != data.size()) {
+    return {};
+  }
+  nonlinear::Problem problem = problem_of(data, data.final_weights(), fitted.parameters);
+  problem.sigma = fitted.sigma_m;
+  nonlinear::Solution solution;
+  solution.x = fitted.theta;
+  solution.residual = fitted.residual_m;
+  solution.jacobian = fitted.jacobian;
+  solution.at_bound = fitted.at_bound;
+  const MatrixXd whole = nonlinear::covariance(problem, solution).matrix;
+  std::vector<Index> places;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
+                                    [&](const FreeParameter& p) { return p.name == name; });
+    if (found == fitted.parameters.end()) return {};
+    places.push_back(found - fitted.parameters.begin());
+  }
+  const MatrixXd some = whole(places, places);
+  MatrixXd scaled = MatrixXd::Zero(some.rows(), some.cols());
+  for (Index i = 0; i < some.rows(); ++i) {
+    for (Index j = 0; j < some.cols(); ++j) {
+      const double sizes = std::sqrt(some(i, i) * some(j, j));
+      if (!(sizes > 0.0) || std::isnan(errors[i]) || std::isnan(errors[j])) continue;
+      scaled(i, j) = some(i, j) / sizes * errors[i] * errors[j];
+    }
+  }
+  return scaled;
+}
+
+LawCurve law_curve(const plant_sim::ModelFile& model, const FitDataset& data,
+                   std::string_view effect, std::string_view over, const VectorXd& errors,
+                   const MatrixXd& covariance) {
+  LawCurve curve;
+  const plant_sim::formula::Formulas formulas = model.formulas();
+  const FormulaView* const formula = formula_named(formulas, effect);
+  if (formula == nullptr) return curve;
+  const bool of_speed = over == "v" || over == "speed" || over == "direction";
+  const std::size_t which =
+      of_speed && formula->site == plant_sim::effects::Site::force ? std::size_t{1} : 0;
+  Law law(*formula, values_of(model, effect), which);
+  curve.variable = law.place().variables[which];
+  curve.quantity = quantity_of(model, formula->site);
+  const Samples samples = samples_of(model, data, curve.variable);
+  if (samples.empty()) {
+    curve.x = grid(law.range(which).min, law.range(which).max);
+  } else {
+    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+    curve.x = grid(*low, *high);
+    curve.share = shares(samples, curve.x);
+  }
+  const double held = held_value(model, data, law, 1 - which);
+  double moved = 0.0;
+  for (const double x : curve.x) {
+    curve.f.push_back(law(x, held));
+    const double other = held + 0.1 * (law.range(1 - which).max - law.range(1 - which).min);
+    moved = std::max(moved, std::abs(law(x, other) - curve.f.back()));
+  }
+  if (moved > 0.0) curve.held = {law.place().variables[1 - which], held};
+  curve.std_error = errors_of(law.slopes(curve.x, held), errors, covariance);
+  return curve;
+}
+
+}  // namespace estimator::greybox
