@@ -43,16 +43,6 @@ const ParameterInfo& parameter_named(const EffectInfo& effect, const std::string
   refuse_name(effect.name + "." + name, name, names);
 }
 
-double number_in(const std::string& assignment, const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, failed] = std::from_chars(text.data(), end, value);
-  if (failed != std::errc() || rest != end) {
-    throw config::schema::UsageError(assignment + ": is no assignment; allowed: parameter=number");
-  }
-  return value;
-}
-
 ModelFile::Effect& entry_of(ModelFile& model, const EffectInfo& effect) {
   for (ModelFile::Effect& entry : model.effects) {
     if (entry.name == effect.name) return entry;
@@ -61,10 +51,7 @@ ModelFile::Effect& entry_of(ModelFile& model, const EffectInfo& effect) {
 }
 
 void assign(ModelFile& model, const EffectInfo& effect, const std::string& assignment) {
-  const std::size_t equals = assignment.find('=');
-  const std::string name = assignment.substr(0, equals);
-  const double value =
-      number_in(assignment, equals == std::string::npos ? "" : assignment.substr(equals + 1));
+  const auto [name, value] = parse_assignment(assignment);
   const ParameterInfo& info = parameter_named(effect, name);
   if (!(value >= info.min && value <= info.max)) {
     throw bad_config(effect.name + "." + name, "is " + number_text(value) + ", out of range",
@@ -78,6 +65,18 @@ void assign(ModelFile& model, const EffectInfo& effect, const std::string& assig
 std::string number_text(double value) {
   char buffer[32];
   return {buffer, std::to_chars(std::begin(buffer), std::end(buffer), value).ptr};
+}
+
+Assignment parse_assignment(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
+  double value = 0.0;
+  const char* end = number.data() + number.size();
+  const auto [rest, failed] = std::from_chars(number.data(), end, value);
+  if (failed != std::errc() || rest != end) {
+    throw config::schema::UsageError(text + ": is no assignment; allowed: parameter=number");
+  }
+  return {text.substr(0, equals), value};
 }
 
 AddedEffect add_effect(const std::string& file, const std::string& effect,

@@ -16,6 +16,13 @@ struct AddedEffect {
   bool neutral = true;                  ///< every value is neutral
 };
 
+struct Assignment {
+  std::string name;
+  double value = 0.0;
+};
+/// One "parameter=number". Throws config::schema::UsageError for anything else.
+[[nodiscard]] Assignment parse_assignment(const std::string& text);
+
 /// The model of `file` with `effect`, of the library or declared as a formula in the file;
 /// `assignments` are "parameter=number". Throws config::schema::UsageError and ConfigError for
 /// names and values that are not allowed.

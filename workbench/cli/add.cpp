@@ -1,4 +1,5 @@
-// spoolwatch add: a model file with one effect more, or with other values of one it has.
+// spoolwatch add: a model file with one effect more, or with other values of one it has; the effect
+// may be a formula that is typed or that a diagnosis has learned.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -6,8 +7,10 @@
 #include <vector>
 
 #include "config/record/whole_file.h"
+#include "config/schema/error.h"
 #include "config/units/quantity.h"
 #include "workbench/add/added_effect.h"
+#include "workbench/add/own_formula.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/present/printed_axis.h"
@@ -18,11 +21,31 @@ namespace {
 struct AddOptions {
   std::string model, effect, output;
   std::vector<std::string> assignments;
+  std::string formula, name, diagnosis;
+  int law = 0;
 };
 
+add::AddedEffect added_by(const AddOptions& options) {
+  const bool own = !options.formula.empty() || options.law != 0;
+  if (!own && options.effect.empty()) {
+    throw config::schema::UsageError(
+        "add: has nothing to add; allowed: EFFECT, --formula or --law with --from");
+  }
+  if (!own && !options.name.empty()) {
+    throw config::schema::UsageError("--name: names a formula; allowed: with --formula or --law");
+  }
+  if (!own) return add::add_effect(options.model, options.effect, options.assignments);
+  std::vector<std::string> assignments = options.assignments;
+  // no EFFECT there: the first word is an assignment too
+  if (!options.effect.empty()) assignments.insert(assignments.begin(), options.effect);
+  return options.law != 0
+             ? add::add_law(options.model, options.diagnosis, options.law, options.name,
+                            assignments)
+             : add::add_formula(options.model, options.formula, options.name, assignments);
+}
+
 void write_added(const AddOptions& options) {
-  const add::AddedEffect added =
-      add::add_effect(options.model, options.effect, options.assignments);
+  const add::AddedEffect added = added_by(options);
   const present::PrintedAxis axis(present::motion_of(added.model));
   config::record::write_whole(options.output, plant_sim::print_model(added.model));
   std::printf("%s: %s with %s\n", options.output.c_str(), added.model.name.c_str(),
@@ -42,8 +65,21 @@ void write_added(const AddOptions& options) {
 void add_add(CLI::App& command, int&) {
   auto options = std::make_shared<AddOptions>();
   add_model(command, options->model);
-  command.add_option("EFFECT", options->effect, "its name, see `spoolwatch effects`")->required();
+  command.add_option("EFFECT", options->effect,
+                     "its name, see `spoolwatch effects`; none with --formula or --law");
   command.add_option("key=value", options->assignments, "parameters; others stay as they are");
+  CLI::Option* const formula = command.add_option(
+      "--formula", options->formula,
+      "SITE: EXPRESSION, a formula of one's own with its parameters: \"force: c*v_mps^3\" c=1e5");
+  CLI::Option* const law =
+      command.add_option("--law", options->law, "the N-th law of a diagnosis, from 1")
+          ->excludes(formula);
+  CLI::Option* const from =
+      command.add_option("--from", options->diagnosis, "what `diagnose --json` has written")
+          ->needs(law);
+  law->needs(from);
+  command.add_option("--name", options->name,
+                     "name of the formula's block (own_SITE, or the law's name)");
   command.add_option("-o,--output", options->output, "the model file to write")->required();
   command.callback([options] { write_added(*options); });
 }

@@ -137,6 +137,101 @@ TEST_F(AddTest, RefusesAParameterGivenTwice) {
               HasSubstr("coulomb_N: is given twice"));
 }
 
+TEST_F(AddTest, WritesAFormulaWithItsBlock) {
+  const std::string axis = kModels + "force_driven_axis.toml";
+  EXPECT_THAT(add({axis, "--formula", "force: c*v_mps^3", "c=1e5"}), HasSubstr("with own_force"));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("own_force.c"), 1e5);
+  const plant_sim::ModelFile model = plant_sim::load_model(out());
+  ASSERT_EQ(model.formula_effects.size(), 1U);
+  EXPECT_EQ(model.formula_effects[0].formula, "c*v_mps^3");
+  EXPECT_LT(model.formula_effects[0].parameters[0].min, 0.0);
+  EXPECT_GT(model.formula_effects[0].parameters[0].max, 1e6);
+  add({out().string(), "--formula", "command: u_V * (1 + a*abs(u_V))", "a=-0.01", "--name",
+       "gain"});
+  plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("gain.a"), -0.01);
+  EXPECT_EQ(*plant->parameter("own_force.c"), 1e5);
+}
+
+TEST_F(AddTest, KeepsAWidthBelowAFractionBarAwayFromZero) {
+  add({kModels + "force_driven_axis.toml", "--formula", "force: F_N * tanh(v_mps / w_mps)",
+       "F_N=20", "w_mps=0.01"});
+  const auto parameters = plant_sim::load_model(out()).formula_effects[0].parameters;
+  EXPECT_EQ(parameters[0].neutral, 0.0);
+  EXPECT_GT(parameters[1].min, 0.0);
+  EXPECT_GT(parameters[1].max, 0.1);
+}
+
+TEST_F(AddTest, RefusesAFormulaThatTheModelCannotHave) {
+  const std::string axis = kModels + "force_driven_axis.toml";
+  const auto said = [&](const std::string& formula, std::vector<std::string> values) {
+    values.insert(values.begin(), {axis, "--formula", formula});
+    return refusal(values, 2);
+  };
+  EXPECT_THAT(said("forc: c*v_mps", {"c=1"}), HasSubstr("did you mean force?; allowed: command"));
+  EXPECT_THAT(said("opening: c*x_m", {"c=1"}), HasSubstr("force_driven_axis does not have"));
+  EXPECT_THAT(said("force: c*w_mps", {"c=1"}), HasSubstr("unknown name w_mps"));
+  EXPECT_THAT(said("force: c*k*v_mps", {"c=1"}), HasSubstr("parameters are given as NAME=NUMBER"));
+  EXPECT_THAT(said("force: c*v_mps", {"c=1", "d=2"}), HasSubstr("d: is not in the formula"));
+  EXPECT_THAT(said("force: c*v_mps", {"c=1", "c=2"}), HasSubstr("given twice"));
+  EXPECT_THAT(said("force: c*v_mps", {"c=0"}), HasSubstr("above or below 0"));
+  EXPECT_THAT(said("force: v_mps", {}), HasSubstr("has no parameter"));
+  EXPECT_THAT(said("c*v_mps", {"c=1"}), HasSubstr("has no site"));
+  EXPECT_THAT(said("force: c*(v_mps", {"c=1"}), HasSubstr("unclosed parenthesis"));
+  EXPECT_THAT(said("force: 3 + c*v_mps", {"c=1"}), HasSubstr("has influence when"));
+  EXPECT_THAT(said("force: c*v_mps", {"c=1", "--name", "friction"}), HasSubstr("library"));
+  EXPECT_THAT(refusal({axis}, 2), HasSubstr("nothing to add"));
+  EXPECT_THAT(refusal({axis, "friction", "--name", "own"}, 2), HasSubstr("--formula or --law"));
+}
+
+constexpr const char* kDiagnosis = R"({"laws": [{"name": "cubic_damping", "what": "drag",
+  "site": "force", "variables": ["v"], "formula": "c * v_mps^3", "parameters": {"c": {
+  "value": 812.5, "std_error": 2.0, "what": "size", "min": 0.0, "max": 1e6, "typical": 1e3,
+  "neutral": 0.0}}}]})";
+
+class AddLawTest : public AddTest {
+ protected:
+  AddLawTest() {
+    std::string name = (fs::temp_directory_path() / "law-XXXXXX").string();
+    given_ = ::mkdtemp(name.data());
+    std::ofstream(diagnosis()) << kDiagnosis;
+  }
+  ~AddLawTest() override { fs::remove_all(given_); }
+  [[nodiscard]] std::string diagnosis() const { return (given_ / "diagnosis.json").string(); }
+
+  const std::string axis_ = kModels + "force_driven_axis.toml";
+  fs::path given_;
+};
+
+TEST_F(AddLawTest, TakesTheLawWithItsFittedValue) {
+  EXPECT_THAT(add({axis_, "--law", "1", "--from", diagnosis()}), HasSubstr("with cubic_damping"));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_damping.c"), 812.5);
+  const auto declared = plant_sim::load_model(out()).formula_effects.at(0);
+  EXPECT_EQ(declared.formula, "c * v_mps^3");
+  EXPECT_EQ(declared.parameters[0].max, 1e6);
+  add({axis_, "--law", "1", "--from", diagnosis(), "--name", "drag", "c=900"});
+  plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("drag.c"), 900.0);
+}
+
+TEST_F(AddLawTest, RefusesLawsThatAreNotThere) {
+  EXPECT_THAT(refusal({axis_, "--law", "2", "--from", diagnosis()}, 2), HasSubstr("1 to 1"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", axis_}, 65), HasSubstr("is no diagnosis"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", "/nowhere.json"}, 65), HasSubstr("read"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "d=1"}, 2),
+              HasSubstr("d: is not in the formula"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "c=-1"}, 2),
+              HasSubstr("out of range"));
+  EXPECT_THAT(refusal({kModels + "velocity_servo.toml", "--law", "1", "--from", diagnosis()}, 2),
+              HasSubstr("velocity_servo does not have"));
+  std::ofstream(diagnosis()) << R"({"laws": [{"name": "cubic_damping"}]})";
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis()}, 65), HasSubstr("complete"));
+  EXPECT_THROW(run_command(workbench::cli::add_add, {axis_, "--law", "1", "-o", out().string()}),
+               CLI::ParseError);
+}
+
 TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
   try {
     run_command(workbench::cli::add_add,
