@@ -14,6 +14,7 @@ FrequencyResponse frequency_response(const CrossSpectra& spectra) {
   FrequencyResponse out;
   out.frequency_Hz = spectra.frequency_Hz;
   out.averages = spectra.averages;
+  out.output = spectra.output;
   for (std::size_t i = 0; i < spectra.cross.size(); ++i) {
     const double both = spectra.input[i] * spectra.output[i];
     const double coherence = both > 0.0 ? std::norm(spectra.cross[i]) / both : 0.0;

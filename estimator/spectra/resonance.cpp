@@ -24,6 +24,8 @@ constexpr std::size_t kFewest = 10;  ///< points about a peak
 /// Neighbouring points of a spectrum with Hann windows are not independent: their noise bandwidth
 /// is that many steps.
 constexpr double kBandwidth = 1.5;
+/// Steps of the spectrum that a resonance is wide at least.
+constexpr double kWidth = 3.0;
 /// The stretch about a peak that is fitted: from f / kReach to f kReach.
 constexpr double kReach = 2.0;
 
@@ -182,7 +184,10 @@ std::optional<Resonance> resonance(const FrequencyResponse& measured,
   add_errors(with, f0_Hz, found);
   const bool inside = found.frequency_Hz > near.front().frequency_Hz &&
                       found.frequency_Hz < near.back().frequency_Hz;
-  if (!inside || found.damping_ratio > kLightly || without.squares < kExplained * with.squares) {
+  const double step_Hz = measured.frequency_Hz.at(1) - measured.frequency_Hz.at(0);
+  const bool is_line = 2.0 * found.damping_ratio * found.frequency_Hz < kWidth * step_Hz;
+  if (!inside || is_line || found.damping_ratio > kLightly ||
+      without.squares < kExplained * with.squares) {
     return std::nullopt;
   }
   return found;

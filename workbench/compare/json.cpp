@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "workbench/present/json.h"
+#include "workbench/present/resonance_json.h"
 
 namespace workbench::compare {
 namespace {
@@ -62,6 +63,7 @@ std::string to_json(const validation::Comparison& c) {
   out["worst"] = ordered_json::array();
   for (const validation::SignificantRegion& failing : c.worst)
     out["worst"].push_back(json_of(failing));
+  out["resonance"] = present::resonance_json(c.resonance);
   out["gain_ratio"] = number_or_null(c.systematic.gain_ratio);
   out["offset_mps"] = number_or_null(c.systematic.offset_mps);
   out["explained_share"] = number_or_null(c.systematic.share);

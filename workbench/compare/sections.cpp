@@ -4,6 +4,7 @@
 #include "config/units/quantity.h"
 #include "workbench/compare/comparison_report.h"
 #include "workbench/present/compare_units.h"
+#include "workbench/present/dynamics_plots.h"
 #include "workbench/present/record_section.h"
 
 namespace workbench::compare {
@@ -171,6 +172,28 @@ Section against_section(const validation::Comparison& c) {
   return section;
 }
 
+Section dynamics_section(const validation::Comparison& c) {
+  const greybox::Dataset& r = c.record;
+  Section section;
+  section.heading = "By frequency";
+  section.paragraphs = {present::kDynamicsMeaning};
+  if (c.resonance) section.paragraphs.push_back(present::resonance_words(*c.resonance));
+  present::NamedValues error{"residual", Tone::residual, c.error_m};
+  present::NamedValues model{"model", Tone::model, r.y_m};
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (r.valid[k] == 0) error.values[k] = kNaN;
+    model.values[k] -= c.free_error_m[k];
+  }
+  section.plots = present::response_plots(r, {model}, c.noise_floor_m);
+  if (section.plots.empty()) {
+    section.paragraphs.emplace_back(
+        "The motion excites too few frequencies for a response to be told.");
+  }
+  section.plots.push_back(present::spectrum_plot(r, {error}, c.noise_floor_m));
+  section.plots.push_back(present::autocorrelation_plot(r, {error}));
+  return section;
+}
+
 present::Table number_table(const validation::Comparison& c) {
   present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
@@ -216,7 +239,8 @@ Section number_section(const validation::Comparison& c) {
 }  // namespace
 
 std::vector<Section> sections(const validation::Comparison& c, const std::string& prefix) {
-  return {time_section(c, prefix), where_section(c), against_section(c), number_section(c)};
+  return {time_section(c, prefix), where_section(c), against_section(c), dynamics_section(c),
+          number_section(c)};
 }
 
 present::Report make_report(const validation::Comparison& c, const std::string& command) {

@@ -10,6 +10,7 @@
 #include "estimator/greybox/motion_scale.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/present/dataset_notes.h"
+#include "workbench/present/dynamics_plots.h"
 #include "workbench/present/record_findings.h"
 
 namespace workbench::compare {
@@ -191,6 +192,7 @@ Words words(const validation::Comparison& c) {
   }
   add(size_words(c));
   add(drift_words(c));
+  if (c.resonance) add(present::resonance_words(*c.resonance));
   add(dependence_words(c));
   return w;
 }

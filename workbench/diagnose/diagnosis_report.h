@@ -5,9 +5,11 @@
 #include <functional>
 #include <iosfwd>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/spectra/resonance.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/present/report.h"
 
@@ -21,6 +23,8 @@ struct DiagnosisReport {
   /// Free run from each segment's first sample, all samples; NaN when nothing was fitted.
   double free_run_before_m = std::numeric_limits<double>::quiet_NaN();  ///< the file as it is
   double free_run_after_m = std::numeric_limits<double>::quiet_NaN();   ///< the better model
+  /// Resonance of the measured response that the better model's lacks.
+  std::optional<estimator::spectra::Resonance> resonance = {};
 
   /// False when the records did not move enough for anything to be fitted.
   [[nodiscard]] bool fitted() const { return diagnosis.final.theta.size() > 0; }

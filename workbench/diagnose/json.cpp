@@ -9,6 +9,7 @@
 #include "workbench/diagnose/words.h"
 #include "workbench/present/held_scale_json.h"
 #include "workbench/present/json.h"
+#include "workbench/present/resonance_json.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -185,6 +186,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   }
   json["changing"] = changing_of(d);
   json["laws"] = laws_of(outcome);
+  json["resonance"] = present::resonance_json(outcome.resonance);
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},

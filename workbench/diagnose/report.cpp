@@ -325,6 +325,8 @@ present::Report report_of(const DiagnosisReport& outcome) {
     report.sections.push_back(falling_error_section(outcome));
     if (!d.search.rounds.empty()) report.sections.push_back(candidates_section(outcome));
     report.sections.push_back(parameters_section(outcome));
+    if (!d.laws.empty()) report.sections.push_back(laws_section(outcome));
+    if (auto steps = steps_section(outcome)) report.sections.push_back(std::move(*steps));
     if (!d.where.empty()) report.sections.push_back(where_section(outcome));
   }
   for (present::Section& section : record_sections(outcome)) {

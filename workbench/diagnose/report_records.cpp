@@ -6,8 +6,10 @@
 #include "estimator/greybox/kinematics.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/model_residuals.h"
+#include "workbench/diagnose/residual_plots.h"
+#include "workbench/diagnose/residual_source.h"
 #include "workbench/diagnose/words.h"
-#include "workbench/present/plot_data.h"
+#include "workbench/present/dynamics_plots.h"
 #include "workbench/present/record_section.h"
 
 namespace workbench::diagnose {
@@ -16,16 +18,15 @@ namespace {
 using present::Plot;
 using present::PlotKind;
 using present::Section;
-using present::Series;
 using present::Tone;
 
 using config::signals::kNaN;
-constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
 
-/// The long series of residuals, of all records.
+/// The long series of residuals, of all records, and the model without what was added.
 struct Residuals {
+  plant_sim::ModelFile before;
   Eigen::VectorXd file_m, before_m, after_m, free_file_m, free_after_m;
 };
 
@@ -40,26 +41,10 @@ struct RecordPage {
   greybox::Kinematics kinematics;
   std::vector<double> file_m, before_m, after_m, free_file_m,
       free_after_m;  ///< NaN where it does not count
+  ResidualSource before, after;
   double noise_floor_m = kNaN;
   bool improved = false;  ///< something was added
 };
-
-std::vector<double> times(const std::vector<double>& values, double factor) {
-  std::vector<double> out(values.size());
-  std::transform(values.begin(), values.end(), out.begin(),
-                 [factor](double value) { return factor * value; });
-  return out;
-}
-
-std::vector<double> cut(const Eigen::VectorXd& series_m, std::size_t start,
-                        const greybox::Dataset& record) {
-  std::vector<double> out(record.size(), kNaN);
-  if (series_m.size() == 0) return out;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (record.valid[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
-  }
-  return out;
-}
 
 ResidualScale scale_of(const std::vector<double>& residual_m) {
   double most_m = 0.0;
@@ -90,7 +75,7 @@ std::vector<double> model_mm(const RecordPage& page, const std::vector<double>& 
 Plot position_plot(const RecordPage& page, bool fitted) {
   Plot plot = time_plot(page, "Position", {"position", "mm"});
   plot.series.push_back({.name = "measured",
-                         .y = broken_at_gaps(times(page.record.y_m, 1e3), page.record),
+                         .y = broken_at_gaps(scaled(page.record.y_m, 1e3), page.record),
                          .tone = Tone::measured});
   if (!fitted) return plot;
   plot.series.push_back({.name = "model file, free run",
@@ -108,7 +93,7 @@ Plot residual_plot(const RecordPage& page, const std::string& title,
                    const std::vector<double>& residual_m, Tone tone) {
   const ResidualScale scale = scale_of(residual_m);
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
-  plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
+  plot.series.push_back({.name = "residual", .y = scaled(residual_m, scale.per_m), .tone = tone});
   present::add_noise_band(plot, page.noise_floor_m, scale.per_m);
   return plot;
 }
@@ -122,55 +107,48 @@ Plot command_plot(const RecordPage& page) {
   return plot;
 }
 
-Series mean_of(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
-               Tone tone) {
-  Series series = present::binned(x, y).mean;
-  series.name = name;
-  series.tone = tone;
-  return series;
-}
-
-Series cloud(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
-             Tone tone) {
-  Series series{.name = name, .tone = tone};
-  for (const std::size_t i : present::thin_cloud(x, y, kCloud)) {
-    series.x.push_back(x[i]);
-    series.y.push_back(y[i]);
-  }
-  return series;
-}
-
-Plot against(const RecordPage& page, const std::string& what, const std::string& unit,
-             const std::vector<double>& x) {
-  const ResidualScale scale = scale_of(page.before_m);
-  const std::vector<double> before = times(page.before_m, scale.per_m);
-  const std::vector<double> after = times(page.after_m, scale.per_m);
-  Plot plot{.title = "Residual against " + what,
-            .kind = PlotKind::scatter,
-            .x = {what, unit},
-            .y = {"measured − model", scale.unit},
-            .width = present::PlotWidth::half};
-  if (page.improved) {
-    plot.series = {cloud("before", x, before, Tone::residual),
-                   cloud("after", x, after, Tone::improved),
-                   mean_of("before, mean", x, before, Tone::accent),
-                   mean_of("after, mean", x, after, Tone::model)};
-  } else {
-    const present::Binned curves = present::binned(x, after);
-    plot.series = {cloud("residual", x, after, Tone::residual), curves.mean, curves.rms};
-  }
-  return plot;
+/// Residual without what was added, and with it, against one variable: on an axis each.
+void add_against(const RecordPage& page, const MotionVariable& x, Section& section) {
+  const auto plot_of = [&](const ResidualSource& source, const char* when, Tone tone) {
+    Plot plot{.title = "Residual " + std::string(when) + "against " + x.axis.label,
+              .kind = PlotKind::scatter,
+              .x = x.axis,
+              .y = source.axis,
+              .width = present::PlotWidth::half};
+    plot.series = {cloud("residual", x.values, source.values, tone),
+                   mean_curve("mean", x.values, source.values, Tone::model)};
+    section.plots.push_back(std::move(plot));
+  };
+  if (page.improved) plot_of(page.before, "before ", Tone::residual);
+  plot_of(page.after, page.improved ? "after " : "", Tone::improved);
 }
 
 void add_clouds(const RecordPage& page, Section& section) {
-  std::vector<double> speed = times(page.kinematics.speed_mps, 1e3);
-  section.plots.push_back(against(page, "position", "mm", times(page.record.y_m, 1e3)));
-  section.plots.push_back(against(page, "velocity", "mm/s", speed));
-  section.plots.push_back(against(page, "command", "V", page.record.u_V));
-  for (double& v : speed) v = std::abs(v);
-  section.plots.push_back(against(page, "speed", "mm/s", speed));
-  section.plots.push_back(against(page, "acceleration", "m/s²", page.kinematics.acceleration_mps2));
-  section.plots.push_back(against(page, "time", "s", page.record.t_s));
+  const std::vector<MotionVariable> variables = motion_variables(page.record, page.kinematics);
+  const std::size_t drawn = page.improved ? 2 : variables.size();
+  for (std::size_t i = 0; i < drawn; ++i) add_against(page, variables[i], section);
+}
+
+void add_dynamics(const RecordPage& page, Section& section) {
+  const auto position = [&](const std::vector<double>& free_error_m) {
+    std::vector<double> modelled_m = page.record.y_m;
+    for (std::size_t k = 0; k < modelled_m.size(); ++k) {
+      // the speeds of samples that do not count are not asked for
+      if (std::isfinite(free_error_m[k])) modelled_m[k] -= free_error_m[k];
+    }
+    return modelled_m;
+  };
+  std::vector<present::NamedValues> models{
+      {"model file", Tone::residual, position(page.free_file_m)},
+      {"better model", Tone::improved, position(page.free_after_m)}};
+  for (Plot& plot : present::response_plots(page.record, models, page.noise_floor_m)) {
+    section.plots.push_back(std::move(plot));
+  }
+  std::vector<present::NamedValues> residuals;
+  if (page.improved) residuals.push_back({"before", Tone::residual, page.before_m});
+  residuals.push_back({page.improved ? "after" : "residual", Tone::improved, page.after_m});
+  section.plots.push_back(present::spectrum_plot(page.record, residuals, page.noise_floor_m));
+  section.plots.push_back(present::autocorrelation_plot(page.record, residuals));
 }
 
 Section section_of(const RecordPage& page, bool fitted, const std::string& heading) {
@@ -179,11 +157,17 @@ Section section_of(const RecordPage& page, bool fitted, const std::string& headi
   if (fitted) {
     section.paragraphs = {
         "The residuals are drift-corrected, those that the error above is the RMS of" +
-        std::string(page.improved ? ". Before: the model's own parameters fitted, nothing added; "
-                                    "after: the better model."
-                                  : ".") +
-        " Point clouds show an even selection of the samples and their outline; a curve that "
-        "leaves zero is physics that the model lacks."};
+            std::string(page.improved
+                            ? ". Before: the model's own parameters fitted, nothing added; "
+                              "after: the better model."
+                            : ".") +
+            " Against the motion stands where they arise: the force that the model lacks, or the "
+            "speed "
+            "by which it is off, from the residual's slope over 50 ms. A mean that leaves zero is "
+            "physics that the model lacks. The first half second of each segment, while it "
+            "settles, is "
+            "left out.",
+        present::kDynamicsMeaning};
     if (page.improved) {
       section.plots.push_back(
           residual_plot(page, "Residual before", page.before_m, Tone::residual));
@@ -196,7 +180,10 @@ Section section_of(const RecordPage& page, bool fitted, const std::string& headi
     }
   }
   section.plots.push_back(command_plot(page));
-  if (fitted) add_clouds(page, section);
+  if (fitted) {
+    add_clouds(page, section);
+    add_dynamics(page, section);
+  }
   return section;
 }
 
@@ -208,6 +195,7 @@ Residuals residuals_of(const DiagnosisReport& outcome) {
   const selection::ModelStage& before =
       d.search.rounds.empty() ? d.search.final : d.search.rounds.front().before;
   all.file_m = residual_of_file_m(problem, greybox::kObserver_per_s);
+  all.before = greybox::with_values(problem.model, before.fitted);
   all.before_m = residual_of_m(problem, before.fitted, greybox::kObserver_per_s);
   all.after_m = residual_of_better_m(outcome, greybox::kObserver_per_s);
   all.free_file_m = residual_of_file_m(problem, 0.0);
@@ -225,15 +213,21 @@ std::vector<Section> record_sections(const DiagnosisReport& outcome) {
     const greybox::Dataset& record = data.records[r];
     const std::size_t start = data.starts[r];
     const double noise_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
-    const RecordPage page{.record = record,
-                          .kinematics = greybox::kinematics(record, noise_m),
-                          .file_m = cut(all.file_m, start, record),
-                          .before_m = cut(all.before_m, start, record),
-                          .after_m = cut(all.after_m, start, record),
-                          .free_file_m = cut(all.free_file_m, start, record),
-                          .free_after_m = cut(all.free_after_m, start, record),
-                          .noise_floor_m = data.noise_floor_m,
-                          .improved = !outcome.diagnosis.missing.empty()};
+    RecordPage page{.record = record,
+                    .kinematics = greybox::kinematics(record, noise_m),
+                    .file_m = counted_part(all.file_m, start, record),
+                    .before_m = counted_part(all.before_m, start, record),
+                    .after_m = counted_part(all.after_m, start, record),
+                    .free_file_m = counted_part(all.free_file_m, start, record),
+                    .free_after_m = counted_part(all.free_after_m, start, record),
+                    .before = {},
+                    .after = {},
+                    .noise_floor_m = data.noise_floor_m,
+                    .improved = !outcome.diagnosis.missing.empty()};
+    if (outcome.fitted()) {
+      page.before = residual_source(all.before, record, page.before_m);
+      page.after = residual_source(outcome.diagnosis.better, record, page.after_m);
+    }
     const bool held_out = r >= outcome.prepared->records.size();
     sections.push_back(section_of(page, outcome.fitted(),
                                   (held_out ? "Held out: " : "Record ") + file_name(record.name)));

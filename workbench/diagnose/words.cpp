@@ -13,6 +13,7 @@
 #include "workbench/diagnose/disturbance_words.h"
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/record_words.h"
+#include "workbench/present/dynamics_plots.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
@@ -253,6 +254,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back("What remains does not follow from command or motion: " +
                   disturbance_words(*d.disturbance) + ".");
   }
+  if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));
   if (!d.possible.empty()) {
     out.push_back(
         "Not established: " + config::schema::joined_by(d.possible, possible_words, ", ") + ".");

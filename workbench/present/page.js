@@ -17,9 +17,15 @@ function draw(canvas, plot) {
         tooltip: tooltip(plot),
       },
     },
-    plugins: [lines, numbers, empty],
+    plugins: [bands, lines, numbers, empty],
   });
   charts.push(chart);
+  chart.keys = [];
+  chart.home = {};
+  for (const axis of ['x', 'y']) {
+    const {min, max} = chart.config.options.scales[axis];
+    chart.home[axis] = [min, max];
+  }
   legend(chart, plot);
   if (!plot.categories) follow(chart, plot);
 }
@@ -33,6 +39,7 @@ function legend(chart, plot) {
     const key = name.appendChild(document.createElement('i'));
     key.className = look;
     key.style.color = colour;
+    chart.keys.push(key);
     name.append(text);
     return name;
   };
@@ -53,7 +60,7 @@ function legend(chart, plot) {
     const small = plot.y.unit === 'mm' && Math.abs(line.value) < .01;
     const value = small ? number(1000 * line.value, 3) + ' µm'
                         : number(line.value, 3) + (plot.y.unit ? ' ' + plot.y.unit : '');
-    add('span', i % 3 === 1 ? 'dotted' : 'dashed', FLOOR, line.label + ' ' + value);
+    add('span', i % 3 === 1 ? 'dotted' : 'dashed', theme.floor, line.label + ' ' + value);
   });
   if (list.children.length) chart.canvas.closest('figure').querySelector('.head').append(list);
 }
@@ -70,7 +77,7 @@ function child(chart, tag, name) {
 
 function set_range(chart, axis, range) {
   const options = chart.options.scales[axis];
-  [options.min, options.max] = range || [undefined, undefined];
+  [options.min, options.max] = range || chart.home[axis];
 }
 
 function apply(chart, x, y) {
@@ -143,8 +150,33 @@ function follow(chart, plot) {
   chart.reset_button.addEventListener('click', reset);
 }
 
-// Print: the column of an A4 page, and more pixels.
+// Another theme: colours alone change, zoom and hidden series stay.
+function repaint(name) {
+  theme = THEMES[name];
+  for (const chart of charts) {
+    const plot = chart.options.plot, before = chart.options.scales;
+    const ranges = ['x', 'y'].map((axis) => [before[axis].min, before[axis].max]);
+    plot.series.forEach((series, i) => {
+      const {data, ...look} = dataset(plot, series, i);
+      Object.assign(chart.data.datasets[i], look);
+    });
+    const after = scales(plot);
+    ['x', 'y'].forEach((axis, i) => [after[axis].min, after[axis].max] = ranges[i]);
+    chart.options.scales = after;
+    chart.options.plugins.tooltip = tooltip(plot);
+    const named = plot.series.length > 1 ? plot.series.length : 0;
+    chart.keys.forEach((key, i) => {
+      key.style.color = i < named ? chart.data.datasets[i].borderColor : theme.floor;
+    });
+    chart.update('none');
+  }
+}
+const repaint_screen = () => repaint(screen_is_dark.matches ? 'dark' : 'light');
+screen_is_dark.addEventListener('change', repaint_screen);
+
+// Print: black on white, the column of an A4 page, and more pixels.
 addEventListener('beforeprint', () => {
+  repaint('light');
   for (const chart of charts) {
     const half = chart.canvas.closest('figure').classList.contains('half');
     const [width, height] = PRINT_PX[half ? 'half' : 'full'];
@@ -155,6 +187,7 @@ addEventListener('beforeprint', () => {
   }
 });
 addEventListener('afterprint', () => {
+  repaint_screen();
   for (const chart of charts) {
     delete chart.options.devicePixelRatio;
     chart.resize();

@@ -17,9 +17,9 @@ function wrapped(name, letters) {
 function scale(plot, which) {
   const axis = (which === value_axis(plot)) ? plot.y : plot.x;
   const common = {
-    title: {display: Boolean(axis.label), text: heading(axis), color: SOFT},
-    grid: {color: GRID, borderColor: '#b6c0cb', tickColor: '#b6c0cb', tickLength: 5},
-    ticks: {color: SOFT, maxRotation: 0, autoSkipPadding: 16},
+    title: {display: Boolean(axis.label), text: heading(axis), color: theme.soft},
+    grid: {color: theme.grid, borderColor: theme.frame, tickColor: theme.frame, tickLength: 5},
+    ticks: {color: theme.soft, maxRotation: 0, autoSkipPadding: 16},
   };
   if (plot.categories && which !== value_axis(plot)) {
     common.ticks.autoSkip = !plot.horizontal && plot.categories.length > 12;
@@ -38,6 +38,10 @@ function scale(plot, which) {
       return lead === 1 || (few && (lead === 2 || lead === 5)) ? text(v) : null;
     };
     common.ticks.autoSkip = false;
+    if (which !== value_axis(plot)) {  // frequencies end where their values do
+      const known = plot.series.flatMap((one) => one.x || plot.xs || []).filter((v) => v > 0);
+      [common.min, common.max] = [Math.min(...known), Math.max(...known)];
+    }
     return {...common, type: 'logarithmic', grace: 0};
   }
   common.ticks.callback = text;
@@ -49,16 +53,16 @@ function scale(plot, which) {
 function scales(plot) {
   const both = {x: scale(plot, 'x'), y: scale(plot, 'y')};
   const values = both[value_axis(plot)];
-  const data = plot.series.flatMap((s) => s.y)
+  const data = plot.series.flatMap((s) => [...s.y, ...(s.low || []), ...(s.high || [])])
                    .filter((v) => Number.isFinite(v) && !(plot.y.log && v <= 0));
   const levels = plot.lines.map((l) => l.value).filter((v) => !plot.y.log || v > 0);
   const low = Math.min(...extent(data, levels)), high = Math.max(...extent(data, levels));
   if (plot.y.log && Number.isFinite(low)) {
     values.suggestedMin = low / 1.5;
     values.suggestedMax = high * (plot.categories ? 1.9 : 1.2);
-  } else if (levels.length) {
-    values.suggestedMin = Math.min(...levels);
-    values.suggestedMax = Math.max(...levels);
+  } else if (levels.length || plot.series.some((s) => s.low)) {
+    values.suggestedMin = low;
+    values.suggestedMax = high;
   }
   if (plot.categories && !plot.y.log) values.grace = '12%';
   return both;
@@ -81,8 +85,8 @@ function hover(plot) {
 
 function tooltip(plot) {
   return {
-    backgroundColor: 'rgba(255,255,255,.96)', titleColor: INK, bodyColor: INK,
-    borderColor: '#c5ced8', borderWidth: 1, padding: 9, boxPadding: 4, usePointStyle: false,
+    backgroundColor: tint(theme.paper, .96), titleColor: theme.ink, bodyColor: theme.ink,
+    borderColor: theme.frame, borderWidth: 1, padding: 9, boxPadding: 4, usePointStyle: false,
     boxWidth: 10, boxHeight: 10,
     itemSort: (a, b) => a.datasetIndex - b.datasetIndex,
     callbacks: {

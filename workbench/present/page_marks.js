@@ -1,5 +1,35 @@
-// What Chart.js draws besides the series: levels across the plot, figures at bars and steps, and a
+// What Chart.js draws besides the series: bands of uncertainty, levels across the plot, figures at bars and steps, and a
 // word where there is nothing to draw. Series and colours: page_series.js.
+
+// The band about a line: its uncertainty, below every series.
+const bands = {
+  id: 'bands',
+  beforeDatasetsDraw(chart) {
+    const plot = chart.options.plot, area = chart.chartArea, ctx = chart.ctx;
+    const at = (scale, v) => chart.scales[scale].getPixelForValue(v);
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(area.left, area.top, area.right - area.left, area.bottom - area.top);
+    ctx.clip();
+    plot.series.forEach((series, s) => {
+      if (!series.low || !chart.isDatasetVisible(s)) return;
+      ctx.fillStyle = tint(chart.data.datasets[s].borderColor, .22);
+      const xs = series.x || plot.xs;
+      const known = (i) => [series.low[i], series.high[i]].every((v) => v !== null && !isNaN(shown(v, plot.y)));
+      for (let i = 0; i < xs.length; ++i) {
+        if (!known(i)) continue;
+        let end = i;
+        while (end + 1 < xs.length && known(end + 1)) ++end;
+        ctx.beginPath();
+        for (let k = i; k <= end; ++k) ctx.lineTo(at('x', xs[k]), at('y', series.high[k]));
+        for (let k = end; k >= i; --k) ctx.lineTo(at('x', xs[k]), at('y', series.low[k]));
+        ctx.fill();
+        i = end;
+      }
+    });
+    ctx.restore();
+  },
+};
 
 const lines = {
   id: 'lines',
@@ -7,7 +37,7 @@ const lines = {
     const plot = chart.options.plot;
     const area = chart.chartArea, ctx = chart.ctx, axis = value_axis(plot);
     ctx.save();
-    ctx.strokeStyle = FLOOR;
+    ctx.strokeStyle = theme.floor;
     ctx.lineWidth = 1.5;
     let dash = -1;
     plot.lines.forEach((line) => {
@@ -37,7 +67,7 @@ const empty = {
     const area = chart.chartArea, ctx = chart.ctx;
     ctx.save();
     ctx.textAlign = 'center';
-    ctx.fillStyle = SOFT;
+    ctx.fillStyle = theme.soft;
     ctx.fillText('No values to draw', (area.left + area.right) / 2, (area.top + area.bottom) / 2);
     ctx.restore();
   },
@@ -63,9 +93,9 @@ const numbers = {
       const y = plot.horizontal ? element.y + 4 : element.y - 9;
       ctx.lineWidth = 4;
       ctx.lineJoin = 'round';
-      ctx.strokeStyle = '#fff';
+      ctx.strokeStyle = theme.paper;
       ctx.strokeText(text, x - half, y);
-      ctx.fillStyle = INK;
+      ctx.fillStyle = theme.ink;
       ctx.fillText(text, x - half, y);
     }));
     ctx.restore();

@@ -1,11 +1,23 @@
 // How values read and how series look: numbers, colours, the sets that Chart.js draws.
 
-const INK = '#16202b', SOFT = '#55616e', GRID = '#e8ecf1', FLOOR = '#b3261e';
-// Okabe and Ito's colours, told apart with any colour vision.
-const TONES = {
-  measured: '#16202b', model: '#0072b2', residual: '#d55e00', improved: '#009e73',
-  accent: '#b0578d', muted: '#9aa5b1',
+// Okabe and Ito's colours, told apart with any colour vision; lighter ones of the same hues on a
+// dark screen. Paper is white.
+const THEMES = {
+  light: {
+    ink: '#16202b', soft: '#55616e', grid: '#e8ecf1', frame: '#b6c0cb', floor: '#b3261e',
+    paper: '#ffffff',
+    tones: {measured: '#16202b', model: '#0072b2', residual: '#d55e00', improved: '#009e73',
+            accent: '#b0578d', muted: '#9aa5b1'},
+  },
+  dark: {
+    ink: '#e3e8ee', soft: '#a4b0bd', grid: '#26303b', frame: '#55616e', floor: '#ff8a80',
+    paper: '#11171d',
+    tones: {measured: '#f2f5f8', model: '#56b4e9', residual: '#ff9d4d', improved: '#2fcf9f',
+            accent: '#e08fc0', muted: '#7d8a98'},
+  },
 };
+const screen_is_dark = matchMedia('(prefers-color-scheme: dark)');
+let theme = THEMES[screen_is_dark.matches ? 'dark' : 'light'];
 const CYCLE = ['model', 'residual', 'improved', 'accent', 'measured', 'muted'];
 const DASHES = [[7, 4], [2, 3], [12, 4, 2, 4]];
 
@@ -33,7 +45,7 @@ const points = (plot, series) => {
 // Curves lie above bars, bars above clouds, later series above earlier ones.
 function dataset(plot, series, index) {
   const tone = series.tone === 'automatic' ? CYCLE[index % CYCLE.length] : series.tone;
-  const colour = TONES[tone];
+  const colour = theme.tones[tone];
   const base = {label: series.name, borderColor: colour, backgroundColor: colour};
   const count = series.y.length;
   if (plot.categories) base.data = series.y.map((y) => shown(y, plot.y));

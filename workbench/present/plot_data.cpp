@@ -48,6 +48,13 @@ std::vector<std::size_t> shared_rows(const Plot& plot, const std::vector<double>
   return thin_lines(lines, x.size(), kLineRows);
 }
 
+/// The edges of the band at some rows; nothing without one.
+std::string band_json(const Series& series, const std::vector<std::size_t>& rows) {
+  if (series.low.size() != series.y.size() || series.high.size() != series.y.size()) return "";
+  return R"(,"low":)" + json_numbers(pick(series.low, rows)) + R"(,"high":)" +
+         json_numbers(pick(series.high, rows));
+}
+
 std::string points_json(const std::vector<double>& x, const std::vector<double>& y) {
   return R"(,"x":)" + json_numbers(x) + R"(,"y":)" + json_numbers(y);
 }
@@ -73,14 +80,14 @@ std::string series_json(const Plot& plot, const Series& series,
     if (n > kCloudPoints && n > thinned.from) thinned = {n, rows.size(), true};
   } else if (series.x.empty() && series.y.size() == x.size()) {
     if (shared.size() < n && n > thinned.from) thinned = {n, shared.size(), false};
-    if (shared.size() < n) return out + R"(,"y":)" + json_numbers(pick(series.y, shared)) + "}";
-    return out + R"(,"y":)" + json_numbers(series.y) + "}";
+    return out + R"(,"y":)" + json_numbers(pick(series.y, shared)) + band_json(series, shared) +
+           "}";
   } else {
     const std::vector<double> y(series.y.begin(), series.y.begin() + static_cast<long>(n));
     rows = thin_lines({&y}, n, kLineRows);
     if (rows.size() < n && n > thinned.from) thinned = {n, rows.size(), false};
   }
-  return out + points_json(pick(x, rows), pick(series.y, rows)) + "}";
+  return out + points_json(pick(x, rows), pick(series.y, rows)) + band_json(series, rows) + "}";
 }
 
 std::string note_of(const Thinned& thinned) {

@@ -10,9 +10,9 @@
 namespace workbench::present {
 
 /// Above this number of rows a line plot is thinned.
-constexpr std::size_t kLineRows = 20'000;
+constexpr std::size_t kLineRows = 6'000;
 /// Above this number of points a cloud is thinned.
-constexpr std::size_t kCloudPoints = 8'000;
+constexpr std::size_t kCloudPoints = 6'000;
 
 struct PlotText {
   std::string json;

@@ -32,6 +32,8 @@ struct Series {
   Tone tone = Tone::automatic;
   std::optional<PlotKind> kind{};  ///< unset: the plot's kind (a binned curve over a scatter, say)
   bool dashed = false;
+  /// A band about the line, such as twice its standard error; each empty or as long as y.
+  std::vector<double> low{}, high{};
 };
 
 /// A line across the plot at one value of the y axis: a noise floor, a limit.

@@ -10,6 +10,7 @@
 #include "config/signals/nan.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/dataset.h"
+#include "estimator/greybox/validation/speed_response.h"
 #include "estimator/residual/noise_floor.h"
 #include "estimator/residual/whiteness.h"
 
@@ -215,6 +216,7 @@ Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
   c.systematic = systematic_error(record, c.error_m, c.speed_error_mps, observer_per_s);
   c.motion = motion_ratio(record, c.error_m, observer_per_s);
   c.response = command_response(record.sample_time_s, record.u_V, record.y_m, record.starts);
+  c.resonance = missing_resonance(record, c.free_error_m, c.noise_floor_m);
   find_arising(c);
   find_regions(c);
   return c;

@@ -24,6 +24,7 @@
 #include "estimator/greybox/validation/regions.h"
 #include "estimator/greybox/validation/significant_regions.h"
 #include "estimator/greybox/validation/systematic_error.h"
+#include "estimator/spectra/resonance.h"
 #include "plant_sim/model_file.h"
 
 namespace estimator::greybox::validation {
@@ -76,6 +77,8 @@ struct Comparison {
   CommandRange command;
   double stroke_m = 0.0;  ///< the model's; 0: it has none
   std::optional<StrokeExcess> beyond_stroke;
+  /// Resonance of the measured response that the model's lacks (speed_response.h).
+  std::optional<spectra::Resonance> resonance;
 
   [[nodiscard]] double floor_ratio() const { return rms_m / noise_floor_m; }
   [[nodiscard]] double duration_s() const;

@@ -119,6 +119,18 @@ TEST(Report, ALongRecordIsThinnedAndSaysSo) {
   EXPECT_THAT(present::render(example_report()), Not(HasSubstr("Drawn with")));
 }
 
+TEST(Report, ABandArrivesBesideItsLine) {
+  const present::Plot plot{
+      .title = "p",
+      .x_values = {0.0, 1.0},
+      .series = {{.name = "a", .y = {1.0, 2.0}, .low = {0.5, kNan}, .high = {1.5, 2.5}},
+                 {.name = "edges of another length", .y = {1.0, 2.0}, .low = {0.5}}}};
+  const nlohmann::json data = data_of(present::render(one_plot(plot)));
+  EXPECT_EQ(data[0]["series"][0]["low"], nlohmann::json::parse("[0.5,null]"));
+  EXPECT_EQ(data[0]["series"][0]["high"], nlohmann::json::parse("[1.5,2.5]"));
+  EXPECT_FALSE(data[0]["series"][1].contains("low"));
+}
+
 TEST(Report, SeriesOfUnequalLengthAreCutToTheShorter) {
   const present::Plot plot{
       .title = "p",

@@ -1,0 +1,95 @@
+// The section of the report that draws the laws that were learned.
+#include <cmath>
+
+#include "config/units/quantity.h"
+#include "estimator/greybox/kinematics.h"
+#include "workbench/diagnose/learned_curves.h"
+#include "workbench/diagnose/model_residuals.h"
+#include "workbench/diagnose/report_sections.h"
+#include "workbench/diagnose/residual_plots.h"
+#include "workbench/diagnose/residual_source.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using present::Plot;
+using present::Series;
+using present::Tone;
+
+/// What is left without the law, where that is a force over a variable that is measured.
+Series points_of(const DiagnosisReport& outcome, const LearnedLaw& learned) {
+  const greybox::FitDataset& data = outcome.prepared->problem.data;
+  plant_sim::ModelFile without = outcome.diagnosis.better;
+  if (learned.curve.quantity != "force_N" || without.plant != "force_driven_axis") return {};
+  if (learned.curve.held) return {};  // one curve of many
+  for (plant_sim::ModelFile::Effect& effect : without.effects) {
+    if (effect.name == learned.law->effect.name) effect.present = false;
+  }
+  const Eigen::VectorXd residual_m = residual_of_model_m(without, data, greybox::kObserver_per_s);
+  std::vector<double> x;
+  std::vector<double> f;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const greybox::Dataset& record = data.records[r];
+    const double noise_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
+    const std::vector<double> over = learned.curve.variable == "v_mps"
+                                         ? greybox::kinematics(record, noise_m).speed_mps
+                                         : record.y_m;
+    const std::vector<double> force =
+        residual_source(without, record, counted_part(residual_m, data.starts[r], record)).values;
+    x.insert(x.end(), over.begin(), over.end());
+    f.insert(f.end(), force.begin(), force.end());
+  }
+  return cloud("residual force without it", x, f, Tone::residual);
+}
+
+Plot law_plot(const DiagnosisReport& outcome, const LearnedLaw& learned) {
+  const estimator::greybox::LawCurve& curve = learned.curve;
+  const bool over_metres = curve.variable == "y_m" || curve.variable == "v_mps";
+  const double per = over_metres ? 1e3 : 1.0;
+  const auto name_of = [](const std::string& dotted) {
+    return config::units::axis_words(config::units::parameter_words(dotted));
+  };
+  Plot plot;
+  plot.title = learned.law->effect.name;
+  plot.x = {curve.variable == "v_mps" ? "velocity"
+            : curve.variable == "y_m" ? "position"
+            : curve.variable == "u_V" ? "command"
+            : curve.variable == "x_m" ? "opening"
+                                      : curve.variable,
+            (over_metres ? "m" : "") + config::units::unit_of(curve.variable)};
+  plot.y = {name_of(curve.quantity), config::units::unit_of(curve.quantity)};
+  Series points = points_of(outcome, learned);
+  points.x = scaled(std::move(points.x), per);
+  if (!points.y.empty()) plot.series.push_back(std::move(points));
+  Series line{.name = "the law", .y = curve.f, .x = scaled(curve.x, per), .tone = Tone::model};
+  for (std::size_t i = 0; i < curve.f.size(); ++i) {
+    line.low.push_back(curve.f[i] - 2.0 * curve.std_error[i]);
+    line.high.push_back(curve.f[i] + 2.0 * curve.std_error[i]);
+  }
+  line.kind = present::PlotKind::line;
+  plot.series.push_back(std::move(line));
+  plot.caption = learned.law->effect.what + ": " + learned.law->effect.formula +
+                 ". The band is two standard errors; it ends where the records do.";
+  if (curve.held) {
+    plot.caption += " Drawn for " +
+                    config::units::words(config::units::quantity(curve.held->variable,
+                                                                 curve.held->value, std::nan(""))) +
+                    " of " + curve.held->variable + ".";
+  }
+  return plot;
+}
+
+}  // namespace
+
+present::Section laws_section(const DiagnosisReport& outcome) {
+  present::Section section{.heading = "The learned law"};
+  section.paragraphs = {
+      "What the law adds at its site, over one variable, and its standard error. Points: what is "
+      "left of the measured motion without it, where that can be told."};
+  for (const LearnedLaw& learned : learned_laws(outcome)) {
+    section.plots.push_back(law_plot(outcome, learned));
+  }
+  return section;
+}
+
+}  // namespace workbench::diagnose
