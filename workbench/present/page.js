@@ -1,7 +1,7 @@
 // Draws every plot of the page with Chart.js: zoom by dragging, a cursor shared within a group,
 // sharp pictures in print. Runs in one function with page_series.js, page_marks.js, page_axes.js.
 
-const PRINT_PX = {full: [690, 225], half: [334, 225]};
+const PRINT_PX = {full: [690, 160], half: [334, 170]};
 const charts = [];
 
 function draw(canvas, plot) {

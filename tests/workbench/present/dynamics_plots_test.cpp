@@ -55,7 +55,7 @@ TEST(DynamicsPlots, AMotionOfOneFrequencyHasNoResponseElsewhere) {
   auto record = integrator(u_V);
   const std::vector<double> sensor_m = noise(6000, 1e-5, 2);
   for (std::size_t k = 0; k < record.size(); ++k) record.y_m[k] += sensor_m[k];
-  // the sidelobes of the windows reach over the noise for some steps about 2 Hz
+  // the main lobe of the windows, which are 5.12 s long, and some steps of it
   for (const Plot& plot : response_plots(record, {}, 1e-5)) {
     for (const double f_Hz : plot.series[0].x) EXPECT_NEAR(f_Hz, 2.0, 1.0);
   }
