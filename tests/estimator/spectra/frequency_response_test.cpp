@@ -73,6 +73,7 @@ TEST(FrequencyResponse, ScattersByItsStandardError) {
   const std::vector<std::size_t> places{4, 20, 60, 110};
   std::vector<double> squares(places.size(), 0.0);
   std::vector<double> phases(places.size(), 0.0);
+  std::vector<double> stated(places.size(), 0.0);
   double averages = 0.0;
   for (unsigned seed = 0; seed < kRuns; ++seed) {
     const FrequencyResponse h = of(run(6000, kNoise, 100 + seed), kWindow);
@@ -82,6 +83,7 @@ TEST(FrequencyResponse, ScattersByItsStandardError) {
           h.value[places[p]] / true_response(h.frequency_Hz[places[p]]);
       squares[p] += std::pow(std::abs(off) - 1.0, 2) / kRuns;
       phases[p] += std::pow(std::arg(off), 2) / kRuns;
+      stated[p] += h.error_ratio[places[p]] / kRuns;
     }
   }
   for (std::size_t p = 0; p < places.size(); ++p) {
@@ -92,6 +94,7 @@ TEST(FrequencyResponse, ScattersByItsStandardError) {
     // the scatter of 300 runs is known to 4 %, the formula is of first order: four times and some
     EXPECT_NEAR(std::sqrt(squares[p]) / error, 1.0, 0.2) << f_Hz;
     EXPECT_NEAR(std::sqrt(phases[p]) / error, 1.0, 0.2) << f_Hz;
+    EXPECT_NEAR(stated[p] / error, 1.0, 0.2) << f_Hz;
   }
 }
 
