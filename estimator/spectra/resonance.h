@@ -24,8 +24,8 @@ struct Resonance {
 
 /// `used`: frequencies that count, such as excited(); both responses are of the same frequencies.
 /// None without a clear peak in their midst: |R| more than twice that beside it, lightly damped,
-/// and explained by the poles many times better than without. A peak whose half-power width 2 d f is
-/// below three steps of the spectrum is not told from a spectral line: none either.
+/// and explained by the poles many times better than without. A peak whose half-power width 2 d f
+/// is below three steps of the spectrum is not told from a spectral line: none either.
 [[nodiscard]] std::optional<Resonance> resonance(const FrequencyResponse& measured,
                                                  const FrequencyResponse& model,
                                                  const std::vector<bool>& used);
