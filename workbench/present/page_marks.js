@@ -1,5 +1,5 @@
-// What Chart.js draws besides the series: bands of uncertainty, levels across the plot, figures at bars and steps, and a
-// word where there is nothing to draw. Series and colours: page_series.js.
+// What Chart.js draws besides the series: bands of uncertainty, levels across the plot, figures at
+// bars and steps, and a word where there is nothing to draw. Series and colours: page_series.js.
 
 // The band about a line: its uncertainty, below every series.
 const bands = {
@@ -15,7 +15,8 @@ const bands = {
       if (!series.low || !chart.isDatasetVisible(s)) return;
       ctx.fillStyle = tint(chart.data.datasets[s].borderColor, .22);
       const xs = series.x || plot.xs;
-      const known = (i) => [series.low[i], series.high[i]].every((v) => v !== null && !isNaN(shown(v, plot.y)));
+      const known = (i) => [series.low[i], series.high[i]]
+          .every((v) => v !== null && !isNaN(shown(v, plot.y)));
       for (let i = 0; i < xs.length; ++i) {
         if (!known(i)) continue;
         let end = i;
