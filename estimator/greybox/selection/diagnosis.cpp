@@ -76,7 +76,11 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     return;
   }
   if (held.validation_rms_m <= kUnexplained * search.problem.data.noise_floor_m) {
-    result.search = structure_search_of(search, first, innovations);
+    if (prefer_law(search, first, innovations, result)) return;
+    StructureSearch found = structure_search_of(search, first, innovations);
+    found.nominal_rms_m = result.search.nominal_rms_m;
+    found.preview_s = result.search.preview_s;
+    result.search = std::move(found);
     conclude(context, search, result);
     return;
   }
@@ -98,6 +102,18 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     result.search = std::move(full);
     conclude(context, search, result);
   }
+}
+
+/// True where noise explains what a stage leaves: by its size and, of several effects, which may
+/// stand in for one law, also by its course over the motion.
+bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
+  if (!is_explained(context, stage)) return false;
+  if (stage.added.size() < 2 || context.cancelled()) return true;
+  InnovationSearch search;
+  search.final = settled(context, stage, {}, kMostTurns, wide(context.options.threads));
+  if (!std::isfinite(search.final.minus_two_log)) return true;
+  weigh_remainder(context, search);
+  return !search.physics_missing();
 }
 
 /// True where the disturbance is so slow that it may be a drift of the rig.
@@ -179,7 +195,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   } else if (wrong_record) {
     result.search = abandon_search(search, start);
     conclude(context, search, result);
-  } else if (is_explained(search, start.branch.stage)) {
+  } else if (leaves_noise(search, start.branch.stage)) {
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
   } else {

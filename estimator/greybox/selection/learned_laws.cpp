@@ -85,8 +85,10 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
                 const InnovationSearch& innovations, Diagnosis& result) {
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
-  const std::string site = shared_site(added);
-  if (site.empty() || innovations.physics_missing()) return false;
+  // several effects that leave what follows the motion may stand in for one law, at any site
+  const bool everywhere = added.size() > 1 && innovations.physics_missing();
+  const std::string site = everywhere ? "" : shared_site(added);
+  if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
       search_laws(context, first, site, added.size() > 1 ? added : std::vector<std::string>());

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -24,6 +26,30 @@ TEST(NoiseModel, ARandomForceIsMeasured) {
   const double intensity =
       found.noise.noise.disturbance_sd * std::sqrt(found.noise.noise.corner_Hz);
   EXPECT_NEAR(intensity, 30.0 * std::sqrt(3.0), 0.25 * 30.0 * std::sqrt(3.0));
+}
+
+TEST(NoiseModel, TheLikeliestOneDoesNotDependOnTheStart) {
+  const selection::SearchContext context = context_of(
+      "motion=multisine,length_s=20,outside.force_N=20,outside.corner_Hz=5,"
+      "outside.shake_m=1e-5,outside.shake_Hz=41.3",
+      43);
+  const selection::ModelStage first = selection::first_stage(context);
+  const Linearisations linear = linearise(context.problem.model, context.problem.data,
+                                          first.fitted.parameters, first.fitted.theta);
+  const double noise_m = context.problem.data.noise_floor_m;
+  std::vector<double> costs;
+  for (const double sd_N : {0.3, 20.0, 300.0}) {
+    for (const double corner_Hz : {0.2, 30.0}) {
+      NoiseModel start;
+      start.lines = {{LineSite::sensor, 41.3}};
+      start.noise = {sd_N, corner_Hz, 0.1 * noise_m, 1.5 * noise_m};
+      costs.push_back(estimate_noise(context.problem.model, context.problem.data,
+                                     first.fitted.parameters, first.fitted.theta, linear, start, 2)
+                          .minus_two_log_likelihood);
+    }
+  }
+  const auto [least, most] = std::minmax_element(costs.begin(), costs.end());
+  EXPECT_LT(*most - *least, 0.5);
 }
 
 TEST(NoiseModel, ASearchUnderDisturbanceIsTheSameForAnyNumberOfThreads) {

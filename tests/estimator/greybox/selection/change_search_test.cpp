@@ -144,5 +144,17 @@ TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
   EXPECT_NEAR(change.to / change.from, 1.9, 0.1);
 }
 
+TEST(Changes, ANullThatDriftsIsNoMotionThatOtherParametersFollow) {
+  const SearchContext context = context_of(
+      "motion=multisine,length_s=30,left_out=null_drift,left_out.size=0.06,outside.force_N=20");
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  const ParameterChange& change = found->changes.front();
+  EXPECT_EQ(change.parameter, "null_bias.offset_V");
+  EXPECT_EQ(change.kind, ChangeKind::ramp);
+  EXPECT_NEAR(change.to - change.from, 0.12, 0.006);
+}
+
 }  // namespace
 }  // namespace estimator::greybox::selection
