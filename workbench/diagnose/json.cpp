@@ -181,8 +181,11 @@ std::string to_json(const DiagnosisReport& outcome) {
                     {"command_lead_samples", d.command_lead_samples}};
   json["plants"] = ordered_json::array();
   for (const selection::PlantFit& fit : d.plants) {
-    json["plants"].push_back(
-        {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
+    ordered_json values = ordered_json::object();
+    for (const plant_sim::NamedValue& one : fit.values) values[one.name] = one.value;
+    json["plants"].push_back({{"plant", fit.plant},
+                              {"rms_heldout_m", number_or_null(fit.validation_rms_m)},
+                              {"parameters", std::move(values)}});
   }
   json["changing"] = changing_of(d);
   json["laws"] = laws_of(outcome);

@@ -14,7 +14,6 @@ namespace workbench::diagnose {
 namespace {
 
 /// A plant is reported when it leaves less than this share of the better model's error.
-constexpr double kBetterPlant = 0.7;
 /// Ratio of the integration step's error to the noise floor from which on it is reported.
 constexpr double kCoarseStep = 0.5;
 
@@ -71,10 +70,15 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
                        : std::string()) +
                   ": look at its unit and its zero.");
   }
-  if (!d.plants.empty() && d.plants.front().validation_rms_m < kBetterPlant * d.rms_after_m) {
-    out.push_back("Another plant follows this record better: " + d.plants.front().plant +
-                  ", without any effect, leaves " +
-                  config::units::length_words(d.plants.front().validation_rms_m) + ".");
+  if (d.fits_another_plant()) {
+    const selection::PlantFit& other = d.plants.front();
+    const auto rod = std::find_if(other.values.begin(), other.values.end(),
+                                  [](const auto& one) { return one.name == "rod_side_area_m2"; });
+    const std::string with = rod == other.values.end()
+                                 ? ", without any effect,"
+                                 : fmt::format(" with rod_side_area_m2 = {:.4g}", rod->value);
+    out.push_back("Another plant follows this record better: " + other.plant + with + " leaves " +
+                  config::units::length_words(other.validation_rms_m) + ".");
   }
 }
 

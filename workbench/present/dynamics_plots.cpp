@@ -173,6 +173,8 @@ std::vector<Plot> response_plots(const Dataset& record, const std::vector<NamedV
     }
     magnitude.series.push_back(its_size.take());
     phase.series.push_back(its_angle.take());
+    // one model's curve may lie under another's
+    magnitude.series.back().dashed = phase.series.back().dashed = magnitude.series.size() > 2;
   }
   return {magnitude, phase};
 }

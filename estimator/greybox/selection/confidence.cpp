@@ -167,6 +167,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     std::optional<Doubt> doubt = doubts[i];
     if (!doubt && error_remains && diagnosis.search.interrupted) doubt = Doubt::interrupted;
+    if (!doubt && error_remains && diagnosis.fits_another_plant()) doubt = Doubt::stand_in;
     if (!doubt && error_remains && clear >= kStandIn &&
         !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {
       doubt = Doubt::stand_in;

@@ -101,6 +101,10 @@ struct Diagnosis {
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
+  /// True where another plant without effects leaves clearly less than the better model.
+  [[nodiscard]] bool fits_another_plant() const {
+    return !plants.empty() && plants.front().validation_rms_m < kBetterPlant * rms_after_m;
+  }
   /// The error of a simulation that sensor and disturbance cause.
   [[nodiscard]] double disturbed_floor_m() const;
 };

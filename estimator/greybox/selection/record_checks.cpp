@@ -1,12 +1,14 @@
 #include "estimator/greybox/selection/record_checks.h"
-#include "estimator/greybox/motion_scale.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "estimator/greybox/fit.h"
+#include "estimator/greybox/motion_scale.h"
 #include "estimator/greybox/observer_simulation.h"
+#include "estimator/greybox/selection/two_areas.h"
 #include "estimator/parallel.h"
 #include "plant_sim/hydraulics.h"
 #include "plant_sim/library.h"
@@ -92,17 +94,29 @@ plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDat
   return model;
 }
 
-double fitted_rms_m(const SearchContext& context, const plant_sim::ModelFile& model,
-                    const FitDataset& data) {
+FitSummary fitted_to(const SearchContext& context, const plant_sim::ModelFile& model,
+                     const FitDataset& data) {
   FitOptions options;
   options.max_iterations = kIterations;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   const std::vector<FreeParameter> parameters = plant_parameters(model);
-  const FitSummary fitted =
-      fit(model, data, data.training_mask, parameters, start_of(model, parameters), options);
+  return fit(model, data, data.training_mask, parameters, start_of(model, parameters), options);
+}
+
+double validation_rms_m(const FitSummary& fitted) {
   return std::isfinite(fitted.validation_rms_m) ? fitted.validation_rms_m
                                                 : std::numeric_limits<double>::infinity();
+}
+
+PlantFit plant_fit(const SearchContext& context, const plant_sim::ModelFile& model) {
+  const FitSummary fitted = fitted_to(context, model, context.problem.data);
+  PlantFit result{model.plant, validation_rms_m(fitted), {}};
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    result.values.push_back({p.name, p.to_physical(fitted.theta[static_cast<Eigen::Index>(i)])});
+  }
+  return result;
 }
 
 /// The positions that leave the model's stroke, as below_m (negative) and beyond_m.
@@ -161,7 +175,7 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   for (Dataset& record : turned.records) {
     for (double& u_V : record.u_V) u_V = -u_V;
   }
-  const double turned_m = fitted_rms_m(context, context.problem.model, turned);
+  const double turned_m = validation_rms_m(fitted_to(context, context.problem.model, turned));
   if (turned_m * kTurned < rms_m) checks.turned_sign_ratio = rms_m / turned_m;
   return checks;
 }
@@ -171,15 +185,17 @@ std::vector<PlantFit> fit_other_plants(const SearchContext& context) {
   std::vector<plant_sim::ModelFile> others;
   for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
     if (plant.name == context.problem.model.plant) continue;
-    plant_sim::ModelFile model = plain_model(plant, data);
+    const bool rod = plant.name == std::string_view("hydraulic_cylinder") &&
+                     context.problem.model.plant == "hydraulic_actuator";
+    plant_sim::ModelFile model =
+        rod ? with_two_areas(context.problem.model) : plain_model(plant, data);
     const StrokeOverrun excess = stroke_excess(model, data);
     if (excess.below_m < 0.0 || excess.beyond_m > 0.0) continue;
     others.push_back(std::move(model));
   }
   std::vector<PlantFit> plants(others.size());
-  in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
-    plants[i] = {others[i].plant, fitted_rms_m(context, others[i], data)};
-  });
+  in_parallel(others.size(), context.options.threads,
+              [&](std::size_t i) { plants[i] = plant_fit(context, others[i]); });
   if (context.cancelled()) return {};
   std::stable_sort(plants.begin(), plants.end(), [](const PlantFit& a, const PlantFit& b) {
     return a.validation_rms_m < b.validation_rms_m;

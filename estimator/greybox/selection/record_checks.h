@@ -15,7 +15,10 @@ namespace estimator::greybox::selection {
 struct PlantFit {
   std::string plant;
   double validation_rms_m = 0.0;  ///< weak observer; infinite where it could not be fitted
+  std::vector<plant_sim::NamedValue> values;  ///< those fitted
 };
+/// Error of another plant over that which remains, below which the record is that plant's.
+inline constexpr double kBetterPlant = 0.7;
 
 struct RecordChecks {
   /// With the command's sign turned, the model fits at least this much better; 1: it does not, or

@@ -30,7 +30,7 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
 
 TEST(Effects, WritesTheSameAsJson) {
   const auto json = nlohmann::json::parse(output({"--json", "-"}));
-  ASSERT_EQ(json["effects"].size(), 20U);
+  ASSERT_EQ(json["effects"].size(), 21U);
   EXPECT_EQ(json["plants"].size(), 4U);
   for (const auto& effect : json["effects"]) {
     EXPECT_FALSE(effect["equation"].get<std::string>().empty());

@@ -239,7 +239,7 @@ TEST(Sections, HavePlotsWhoseSeriesAreAsLongAsTheirAxis) {
       }
     }
   }
-  EXPECT_EQ(plots, 15U);
+  EXPECT_EQ(plots, 17U);
   EXPECT_THAT(present::render(make_report(c, "spoolwatch compare a b")),
               testing::HasSubstr("spoolwatch compare a b"));
 }

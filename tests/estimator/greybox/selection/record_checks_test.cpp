@@ -3,7 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <memory>
+
+#include "estimator/greybox/observer_simulation.h"
 #include "estimator/greybox/selection/structure_search.h"
+#include "estimator/greybox/selection/two_areas.h"
+#include "plant_sim/plant.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
@@ -42,11 +48,55 @@ TEST(RecordChecks, APositionOutsideTheStrokeIsNoticed) {
 
 // A valve and its cylinder follow the command by speed: a servo comes near, an axis does not, nor
 // does a cylinder of other sizes.
+/// Rod side over cap side of a fitted hydraulic_cylinder, whose cap side is the model file's area.
+double rod_side_ratio(const PlantFit& cylinder) {
+  const auto area = std::find_if(cylinder.values.begin(), cylinder.values.end(),
+                                 [](const auto& one) { return one.name == "rod_side_area_m2"; });
+  return area == cylinder.values.end() ? 0.0
+                                       : area->value / *diagnose_test::thesis().value("area_m2");
+}
+
 TEST(RecordChecks, TheOtherPlantsAreRankedByWhatTheyLeave) {
   const std::vector<PlantFit> plants = fit_other_plants(context_with(record()));
   ASSERT_EQ(plants.size(), 3U);
-  EXPECT_EQ(plants.front().plant, "velocity_servo");
-  EXPECT_LT(3.0 * plants[0].validation_rms_m, plants[1].validation_rms_m);
+  EXPECT_EQ(plants[0].plant, "hydraulic_cylinder");  // the given one with a free rod side
+  EXPECT_NEAR(rod_side_ratio(plants[0]), 1.0, 0.01);
+  EXPECT_EQ(plants[1].plant, "velocity_servo");
+  EXPECT_LT(3.0 * plants[1].validation_rms_m, plants[2].validation_rms_m);
+}
+
+Eigen::VectorXd residual_m(const plant_sim::ModelFile& model, const Dataset& data) {
+  ObserverSimulation run(model, data, {});
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
+  return residuals_m.col(0);
+}
+
+TEST(RecordChecks, TheSameNumbersAsATwoAreaCylinderMoveAlike) {
+  const SearchContext context = context_with(record());
+  const plant_sim::ModelFile& actuator = context.problem.model;
+  plant_sim::ModelFile cylinder = with_two_areas(actuator);
+  const Dataset& data = context.problem.data.records.front();
+  const Eigen::VectorXd one_m = residual_m(actuator, data);
+  EXPECT_LT((residual_m(cylinder, data) - one_m).cwiseAbs().maxCoeff(), 1e-9);
+  *cylinder.value("rod_side_area_m2") *= 0.9;
+  EXPECT_GT((residual_m(cylinder, data) - one_m).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(RecordChecks, ARodThatFillsOneSideIsFound) {
+  plant_sim::ModelFile rod = with_two_areas(diagnose_test::thesis());
+  *rod.value("rod_side_area_m2") *= 0.7;
+  const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(rod);
+  Dataset data = record();
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    data.y_m[k] = plant->reading_m();
+    data.u_V[k] -= 100.0 * (data.y_m[k] - 0.305);  // stays within the stroke
+    plant->advance(data.u_V[k], data.sample_time_s);
+  }
+  const std::vector<PlantFit> plants = fit_other_plants(context_with(std::move(data)));
+  ASSERT_FALSE(plants.empty());
+  EXPECT_EQ(plants.front().plant, "hydraulic_cylinder");
+  EXPECT_NEAR(rod_side_ratio(plants.front()), 0.7, 0.01);
 }
 
 }  // namespace
