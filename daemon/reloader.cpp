@@ -93,9 +93,7 @@ void Reloader::send_limits(Attempt& attempt) {
   if (parts_.commands == nullptr || !parts_.commands->push(command)) {
     throw config::schema::RunError("the loop takes no limits of guards now");
   }
-  std::erase_if(sent_, [](const auto& update) {
-    return update->outcome.load() != rt::GuardUpdate::Outcome::pending;
-  });
+  std::erase_if(sent_, [](const auto& update) { return update->ended(); });
   sent_.push_back(guards);
   attempt.guards = std::move(guards);
 }
@@ -112,9 +110,12 @@ bool Reloader::limits_taken(Attempt& attempt) {
           "lets more pass, which is refused while the rig is ARMED or in RUN",
           "tighter limits; others after spoolwatch disarm");
     case Outcome::expired:
+    case Outcome::given_up:
       break;
+    case Outcome::taking:
+      return false;
     case Outcome::pending:
-      if (parts_.clock.now_ns() < attempt.deadline_ns) return false;
+      if (parts_.clock.now_ns() < attempt.deadline_ns || !attempt.guards->give_up()) return false;
       break;
   }
   throw config::schema::RunError("the loop did not take the limits of the guards in time");

@@ -138,8 +138,9 @@ RejectReason Loop::carry_out(Event event, bool at_once) noexcept {
 
 void Loop::take(GuardUpdate& update, bool expired) noexcept {
   using Outcome = GuardUpdate::Outcome;
+  const bool begun = update.begin();
   const bool armed = arming_.state() == ArmingState::armed || arming_.state() == ArmingState::run;
-  const Outcome outcome = expired                   ? Outcome::expired
+  const Outcome outcome = expired || !begun         ? Outcome::expired
                           : armed && update.loosens ? Outcome::armed
                                                     : Outcome::applied;
   if (outcome == Outcome::applied) {

@@ -5,6 +5,7 @@
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
+#include "workbench/present/shell_command.h"
 #include "workbench/stand/configuration.h"
 #include "workbench/stand/daemon_check.h"
 
@@ -50,6 +51,12 @@ std::string indented(const std::string& text) {
   return out;
 }
 
+/// The command line that answers without a question.
+std::string command_of(const NewStandOptions& options, const stand::Answers& answers) {
+  if (answers.asked_options.empty()) return options.command;
+  return options.command + " " + present::shell_command(answers.asked_options);
+}
+
 }  // namespace
 
 void make_stand(const NewStandOptions& options) {
@@ -58,7 +65,7 @@ void make_stand(const NewStandOptions& options) {
                                      : stand::answers_of(options.given, nullptr, nullptr);
   stand::check_answers(answers);
   const std::string text = stand::configuration_text(
-      answers, {options.name, options.output, options.command + answers.asked_options});
+      answers, {options.name, options.output, command_of(options, answers)});
   const Draft draft(options.output, text);
   const stand::DaemonCheck check = stand::check_with_daemon(draft.path());
   if (!check.valid) {

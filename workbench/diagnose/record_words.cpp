@@ -13,7 +13,6 @@
 namespace workbench::diagnose {
 namespace {
 
-/// A plant is reported when it leaves less than this share of the better model's error.
 /// Ratio of the integration step's error to the noise floor from which on it is reported.
 constexpr double kCoarseStep = 0.5;
 

@@ -101,7 +101,7 @@ Answers answers_of(const Given& given, std::istream* in, std::ostream* out) {
         take_usual(answers, q);
       } else {
         take(answers, q, text);
-        answers.asked_options += " --" + q.flag + " " + text;
+        answers.asked_options.insert(answers.asked_options.end(), {"--" + q.flag, text});
       }
     } else if (!questions::must_be_given(q)) {
       take_usual(answers, q);

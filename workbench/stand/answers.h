@@ -42,8 +42,8 @@ class Answers {
 
   /// Answers that nobody gave: the usual value was taken. In the order of the questions.
   std::vector<std::string> left_usual;
-  /// Answers that were asked for in the terminal, as options: " --low-mm 20 ...".
-  std::string asked_options;
+  /// Answers that were asked for in the terminal, as options: --low-mm, 20, ...
+  std::vector<std::string> asked_options;
   /// Where the answer to each question that was asked stands, by flag.
   std::map<std::string, std::string> sources;
 

@@ -24,6 +24,19 @@ void require_below(const Answers& a, const char* low, const char* high) {
          fmt::format("more than --{} {:g}", low, a.number(low)));
 }
 
+/// Farthest that a travel guard counts a sine, y + v |v| / (2 b): the amplitude, unless the motion
+/// decelerates harder than the braking b.
+double counted_reach_mm(const Answers& a) {
+  const double amplitude_mm = a.number("amplitude-mm");
+  const double braking_mmps2 = 1e3 * a.number("braking-mps2");
+  const double w_rad_per_s = 2.0 * std::numbers::pi * a.number("frequency-Hz");
+  const double peak_mmps2 = amplitude_mm * w_rad_per_s * w_rad_per_s;
+  if (!(peak_mmps2 > braking_mmps2)) return amplitude_mm;  // also where no braking was asked
+  const double peak_mmps = amplitude_mm * w_rad_per_s;
+  return braking_mmps2 / (2.0 * w_rad_per_s * w_rad_per_s) +
+         peak_mmps * peak_mmps / (2.0 * braking_mmps2);
+}
+
 void check_motion(const Answers& a) {
   const double centre = a.number("centre-mm");
   const double amplitude = a.number("amplitude-mm");
@@ -36,6 +49,12 @@ void check_motion(const Answers& a) {
   if (amplitude > room) {
     refuse(fmt::format("--amplitude-mm is {:g}, beyond the travel", amplitude),
            fmt::format("0 to {:g} about --centre-mm {:g}", room, centre));
+  }
+  if (const double reach = counted_reach_mm(a); reach > room) {
+    refuse(fmt::format("--amplitude-mm {:g} at --frequency-Hz {:g}, beyond the travel: position "
+                       "and braking distance come to {:.4g} mm",
+                       amplitude, a.number("frequency-Hz"), reach),
+           fmt::format("up to {:g} mm about --centre-mm {:g}", room, centre));
   }
   const double speed = a.number("speed-limit-mmps");
   const double peak = 2.0 * std::numbers::pi * a.number("frequency-Hz") * amplitude;

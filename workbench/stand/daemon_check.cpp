@@ -79,7 +79,9 @@ std::string comments(const std::string& printed) {
 
 fs::path daemon_program() {
   std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path() / "spoolwatchd";
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw config::schema::RunError("/proc/self/exe: " + error.message());
+  return self.parent_path() / "spoolwatchd";
 }
 
 DaemonCheck check_with_daemon(const fs::path& configuration) {

@@ -7,9 +7,6 @@
 
 namespace workbench::stand {
 
-/// A switch of the rig, as a daemon's input: id and role are the same.
-void write_input(TomlWriter& w, const char* role, const char* backend, const char* comment);
-
 void write_simulated(TomlWriter& w, const Answers& answers);
 void write_modbus(TomlWriter& w, const Answers& answers);
 void write_board(TomlWriter& w, const Answers& answers);

@@ -125,12 +125,12 @@ class Course {
     take(rest_.dot(x), x.squaredNorm(), basis_.transpose() * x, score);
   }
 
-  /// The likeliest step; `grid`: its possible samples, ascending.
-  Index score_steps(const std::vector<Index>& grid, ChangeScore& best) const {
+  /// The likeliest step; `grid`: its possible samples, ascending, of `samples` in all.
+  Index score_steps(const std::vector<Index>& grid, Index samples, ChangeScore& best) const {
     double product = 0.0;
     double square = 0.0;
     VectorXd along = VectorXd::Zero(basis_.cols());
-    Index end = column_.size();
+    Index end = samples;
     Index chosen = -1;
     for (auto at = grid.rbegin(); at != grid.rend(); ++at) {
       const Index count = end - *at;
@@ -210,7 +210,7 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     ChangeScore score{columns.parameters[i], columns.absent[i]};
     score.throughout_nats = course.throughout_nats();
     ChangeScore step = score;
-    const Index at = course.score_steps(grid, step);
+    const Index at = course.score_steps(grid, t_s.size(), step);
     if (at >= 0) {
       step.at_s = record.t_s[static_cast<std::size_t>(at)];
       scores.push_back(step);

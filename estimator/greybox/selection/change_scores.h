@@ -22,7 +22,7 @@ struct ChangeScore {
   ChangeKind kind = ChangeKind::step;
   double at_s = 0.0;
   double duration_s = 0.0;
-  double by = 0.0;  ///< change of the search value, estimated
+  double by = 0.0;               ///< change of the search value, estimated
   double gain_nats = 0.0;        ///< over the same effect throughout, where it is absent
   double throughout_nats = 0.0;  ///< gain of an absent effect throughout, without its change
 };

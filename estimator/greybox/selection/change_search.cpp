@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kMostChanges = 2;
 /// Gain of a curve over the motion, in those of the best change, from which on no change is sought.
 constexpr double kMotionExplains = 2.0;
-/// Share of what an absent effect gains throughout, from which on its change is more than a by-work
-/// of it, so that both together stand against a curve, which has a constant of its own.
+/// A change counts together with its effect from this share of the effect's gain on: a curve has a
+/// constant of its own.
 constexpr double kChangeOfEffect = 0.05;
 /// Range and step, in samples, in which the time of a change is looked for about its fit.
 constexpr double kScanned_s = 1.0;

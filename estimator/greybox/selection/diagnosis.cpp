@@ -104,8 +104,8 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   }
 }
 
-/// True where noise explains what a stage leaves: by its size and, of several effects, which may
-/// stand in for one law, also by its course over the motion.
+/// True where noise explains what a stage leaves, by its size. Where several effects may stand in
+/// for one law, its course over the motion must be that of noise too.
 bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   if (!is_explained(context, stage)) return false;
   if (stage.added.size() < 2 || context.cancelled()) return true;

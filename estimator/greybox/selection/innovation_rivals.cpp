@@ -15,8 +15,7 @@ constexpr std::size_t kLargestGroup = 3;
 constexpr std::size_t kFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
-/// The same of one with a noise model of its own, when that and its parameters have converged
-/// together.
+/// Lag within which a rival with a noise model of its own is polished before it is dismissed.
 constexpr double kWorthPolishing_nats = 30.0;
 
 ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {

@@ -156,16 +156,19 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
     }
     return best;
   };
+  std::vector<char> polished(trials.size(), 0);
   std::size_t chosen = likeliest();
-  if (chosen != none) {
+  while (chosen != none && polished[chosen] == 0 && !plain.cancelled()) {
     const double best_nats = trials[chosen].candidate.gain_nats;
     in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
       InnovationCandidate& candidate = trials[i].candidate;
-      if (!candidate.settled || !(candidate.gain_nats > best_nats - kContends_nats)) return;
-      InnovationStage polished =
+      const bool contends = candidate.gain_nats > best_nats - kContends_nats;
+      if (plain.cancelled() || polished[i] != 0 || !candidate.settled || !contends) return;
+      polished[i] = 1;
+      InnovationStage turned =
           settled(plain, stages[i].model, stages[i].noise, kMostTurns, SimulationWidth{});
-      if (!(polished.minus_two_log < stages[i].minus_two_log)) return;
-      stages[i] = std::move(polished);
+      if (!(turned.minus_two_log < stages[i].minus_two_log)) return;
+      stages[i] = std::move(turned);
       candidate.gain_nats =
           0.5 * (stage.minus_two_log - stages[i].minus_two_log) - trials[i].penalty_nats;
     });

@@ -3,8 +3,8 @@
 //
 //   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum ((theta + a - mean) / sd)^2
 //
-// a adjustments of the parameters from theta, where r is; what a signature spares the parameters of
-// strain counts for it.
+// a adjustments of the parameters from theta, where r is; a signature is credited with the prior
+// cost that it removes.
 #pragma once
 
 #include <Eigen/Cholesky>

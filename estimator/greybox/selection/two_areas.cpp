@@ -32,6 +32,12 @@ void copy(const plant_sim::ModelFile& from, const std::string& name, plant_sim::
   }
 }
 
+/// Flow per area of an orifice and root of the drop.
+double flow_per_m2(plant_sim::ModelFile actuator) {
+  return *actuator.value("discharge_coefficient") *
+         std::sqrt(2.0 / *actuator.value("density_kg_per_m3"));
+}
+
 }  // namespace
 
 plant_sim::ModelFile with_two_areas(const plant_sim::ModelFile& actuator) {
@@ -58,7 +64,9 @@ plant_sim::ModelFile with_two_areas(const plant_sim::ModelFile& actuator) {
         std::pair{"return_pressure_Pa", "return_pressure_Pa"},
         std::pair{"valve_gain_m_per_V", "rated_flow_m3ps"},
         std::pair{"valve_natural_frequency_rad_per_s", "valve_bandwidth_Hz"},
-        std::pair{"valve_damping_ratio", "valve_damping_ratio"}}) {
+        std::pair{"valve_damping_ratio", "valve_damping_ratio"},
+        std::pair{"retracted_cushion_length_m", "retracted_cushion_length_m"},
+        std::pair{"extended_cushion_length_m", "extended_cushion_length_m"}}) {
     copy(actuator, from, model, as);
   }
   for (auto& prior : model.priors) {
@@ -69,6 +77,12 @@ plant_sim::ModelFile with_two_areas(const plant_sim::ModelFile& actuator) {
   travel_m = oil.valve_gain_m_per_V * *model.value("rated_command_V");
   *model.value("rated_flow_m3ps") =
       oil.orifice * travel_m * std::sqrt(*model.value("rated_drop_Pa"));
+  for (const auto& [from, as] :
+       {std::pair{"retracted_cushion_orifice_m2", "retracted_cushion_flow_m3ps"},
+        std::pair{"extended_cushion_orifice_m2", "extended_cushion_flow_m3ps"}}) {
+    copy(actuator, from, model, as);
+    *model.value(as) *= flow_per_m2(actuator) * std::sqrt(*model.value("rated_drop_Pa"));
+  }
   double& zeta = *model.value("valve_damping_ratio");
   zeta = std::max(zeta, kLeastDamping);
   const double k = 2.0 * zeta * zeta - 1.0;

@@ -282,6 +282,34 @@ TEST(NewLimits, ThatLetMorePassAreRefusedFromArmedOn) {
   EXPECT_EQ(bench.state(), ArmingState::latched) << "the old limit holds";
 }
 
+TEST(NewLimits, ThatAreGivenUpChangeNothing) {
+  LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
+  const auto all =
+      control::all_guards(rules_of({travel_to(0.3, "latch")}).safety, control::Action::latch);
+  GuardUpdate update;
+  update.guards = std::vector<control::Guard>(all.begin(), all.end());
+  LoopCommand command;
+  command.kind = LoopCommand::Kind::guards;
+  command.guards = &update;
+  command.expires_ns = INT64_MAX;
+  bench.commands.push(command);
+  ASSERT_TRUE(update.give_up());
+  EXPECT_FALSE(update.ended()) << "the loop still holds it";
+  bench.tick();
+  EXPECT_TRUE(update.ended());
+  EXPECT_EQ(update.outcome.load(), GuardUpdate::Outcome::expired);
+  bench.run();
+  bench.rig.y_m = 0.25;
+  bench.tick();
+  EXPECT_EQ(bench.state(), ArmingState::latched) << "the old limit holds";
+}
+
+TEST(NewLimits, CannotBeGivenUpOnceTheyAreTaken) {
+  GuardUpdate update;
+  EXPECT_TRUE(update.begin());
+  EXPECT_FALSE(update.give_up());
+}
+
 TEST(NewLimits, ThatComeTooLateAreDropped) {
   LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
   bench.tick();

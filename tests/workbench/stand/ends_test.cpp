@@ -33,6 +33,7 @@ const std::vector<End>& companions() {
        "100000",
        {{"low-mm", "-100000"}, {"high-mm", "100000"}, {"frequency-Hz", "0"}}},
       {"speed-limit-mmps", "0.001", {{"amplitude-mm", "0"}}},
+      {"braking-mps2", "0.001", {{"amplitude-mm", "0"}}},
       {"speed-limit-mmps", "100000", {{"max-speed-mmps", "100000"}, {"edges-per-s", "1e8"}}},
       {"jump-mm", "0.0001", {{"speed-limit-mmps", "0.01"}, {"amplitude-mm", "0"}}},
       {"frozen-V", "99", {{"limit-V", "100"}, {"dac-range-V", "1000"}}},

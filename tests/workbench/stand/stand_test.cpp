@@ -161,6 +161,9 @@ TEST(NewStand, RefusesWrongAnswersInOneLineAndWritesNoFile) {
       {"comedi", {{"permit-line", "-1"}}, "allowed: --permit-line (a watchdog relay), or --accept"},
       {"comedi", {{"chip", "a\"b"}}, "--chip has a quote"},
       {"sim", {{"model", "none.toml"}}, "--model is \"none.toml\", which is no file"},
+      {"sim",
+       {{"amplitude-mm", "99"}, {"frequency-Hz", "0.5"}, {"braking-mps2", "0.5"}},
+       "position and braking distance come to 122.1 mm"},
       {"sim", {{"rate-Hz", "300"}}, "[loop] rate_hz: makes a period of 3.33"},
       {"sim", {{"limit-V", "12"}}, "--dac-range-V is 10; allowed: 12 or more"},
   };
