@@ -75,13 +75,12 @@ class Reloader {
     std::shared_ptr<detection::DetectionUpdate> update;
     std::shared_ptr<rt::GuardUpdate> guards;  ///< null: they stay
     std::string loosened;                     ///< the first limit that lets more pass
-    std::int64_t deadline_ns = 0;             ///< of the loop's answer
+    std::int64_t deadline_ns = 0;             ///< the loop must answer by then
   };
   void prepare(Attempt& attempt);
   /// Adds the new limits, and sends them to the loop.
   void send_limits(Attempt& attempt);
-  /// True once the loop has taken the limits, or where there are none. Throws
-  /// when it has not.
+  /// True once the loop has taken the limits, or where there are none. Throws when it has not.
   [[nodiscard]] bool limits_taken(Attempt& attempt);
   void send_to_detector();
   /// Ends the attempt with the reason.
@@ -93,7 +92,7 @@ class Reloader {
   double sample_time_s_;
   std::string config_hash_, rules_hash_;
   std::unique_ptr<Attempt> attempt_;
-  /// What the loop may still look at.
+  /// Updates that the loop may still look at.
   std::vector<std::shared_ptr<rt::GuardUpdate>> sent_;
   ReloadOutcome last_;
 };

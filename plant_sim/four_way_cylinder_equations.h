@@ -105,7 +105,7 @@ S FourWayCylinder<S, Design>::cushion_ratio(const S& edge, const S& throttle) {
   return throttle / sqrt(max(edge * edge + throttle * throttle, S(kLeast)));
 }
 
-/// What the end cushions let out of either chamber.
+/// Flows that the end cushions let out of either chamber.
 template <class S, class Design>
 template <bool kEffects>
 void FourWayCylinder<S, Design>::throttle_ends(const State& x, const S& opening_m, Flows& q) const {

@@ -108,7 +108,7 @@ class Law {
   [[nodiscard]] plant_sim::formula::VariableRange range(std::size_t variable) const {
     return formula_.ranges[variable];
   }
-  /// What it adds at its site.
+  /// The law adds this at its site.
   [[nodiscard]] double operator()(double x, double held) const {
     const double first = over_ == 0 ? x : held;
     const double second = over_ == 0 ? held : x;

@@ -24,7 +24,7 @@ struct LawCurve {
     double value = 0.0;
   };
 
-  std::string variable;      ///< of the formula, "v_mps"; `x` in its unit
+  std::string variable;      ///< the formula's, "v_mps"; `x` in its unit
   std::string quantity;      ///< what `f` is, with its unit: "force_N"
   std::optional<Held> held;  ///< the formula's other variable, where it depends on it
   std::vector<double> x, f;

@@ -13,7 +13,7 @@ namespace estimator::spectra {
 
 struct Autocorrelation {
   std::vector<double> value;  ///< lags 0, 1, ...; NaN where there is no pair
-  double white_bound = 0.0;   ///< of 95 % for a white series
+  double white_bound = 0.0;   ///< 95 % of a white series' lags lie within
 };
 
 /// NaN marks a missing sample; pairs with one do not count.

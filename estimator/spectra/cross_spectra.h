@@ -31,7 +31,7 @@ struct CrossSpectra {
 };
 
 /// Samples per window, a power of two: at least eight windows fit into `samples`, and a window is
-/// no longer than 8 s. 0 for fewer than 128 samples.
+/// no longer than 8 s or 16 samples. 0 for fewer than 128 samples.
 [[nodiscard]] std::size_t window_for(std::size_t samples, double sample_time_s);
 
 /// Pieces shorter than `window` samples are left out.

@@ -1,5 +1,6 @@
 #include "estimator/spectra/frequency_response.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -53,9 +54,9 @@ FrequencyResponse frequency_response(const CrossSpectra& spectra) {
 }
 
 std::vector<bool> excited(const FrequencyResponse& response, double most_error) {
-  // of two series that have nothing in common, P(c > x) = (1 - x)^(n - 1)
-  const double least =
-      response.averages > 1.0 ? 1.0 - std::pow(kChance, 1.0 / (response.averages - 1.0)) : 1.0;
+  // P(c > x) = (1 - x)^(n - 1) for two series that have nothing in common
+  if (!(response.averages > 1.0)) return std::vector<bool>(response.coherence.size(), false);
+  const double least = 1.0 - std::pow(kChance, 1.0 / (response.averages - 1.0));
   std::vector<bool> out;
   for (std::size_t i = 0; i < response.coherence.size(); ++i) {
     out.push_back(response.coherence[i] > least && response.error_ratio[i] <= most_error);

@@ -21,7 +21,7 @@ struct FrequencyResponse {
   std::vector<std::complex<double>> value;  ///< output unit per input unit
   std::vector<double> coherence;
   std::vector<double> output;       ///< power density, output unit^2/Hz
-  std::vector<double> error_ratio;  ///< of |H|, of the phase in rad; infinite: sidelobes alone
+  std::vector<double> error_ratio;  ///< |H|'s, and the phase's in rad; infinite: sidelobes alone
   double averages = 0.0;
 
   [[nodiscard]] bool empty() const { return frequency_Hz.empty(); }

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kPeak = 2.0;         ///< over what is beside it
 constexpr double kExplained = 4.0;    ///< sum of squares without the poles over that with them
 constexpr double kLightly = 0.3;      ///< damping ratio of a resonance that rings
-constexpr double kLeastError = 0.02;  ///< of a ratio: the leakage of the window
+constexpr double kLeastError = 0.02;  ///< a ratio's: the window leaks as much
 constexpr int kTurns = 15;
 constexpr std::size_t kFewest = 10;  ///< points about a peak
 /// Neighbouring points of a spectrum with Hann windows are not independent: their noise bandwidth
@@ -32,7 +32,7 @@ constexpr double kReach = 2.0;
 struct Point {
   double frequency_Hz;
   Complex ratio;
-  double error;  ///< of the ratio, absolute
+  double error;  ///< the ratio's, absolute
 };
 
 std::vector<Point> ratios(const FrequencyResponse& measured, const FrequencyResponse& model,
@@ -88,7 +88,7 @@ struct Rational {
 struct RationalFit {
   Rational r;
   double squares = 0.0;  ///< in units of the points' errors
-  MatrixXd jacobian;     ///< of the same residuals; b, then a
+  MatrixXd jacobian;     ///< the same residuals'; b, then a
 };
 
 void put(MatrixXd& into, Index i, Index column, Complex value) {

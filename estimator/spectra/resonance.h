@@ -19,13 +19,14 @@ struct Resonance {
   double frequency_error_Hz = 0.0;  ///< standard error
   double damping_ratio = 0.0;
   double damping_error = 0.0;  ///< standard error
-  double peak_ratio = 0.0;     ///< |R| at the poles' frequency over what it is beside
+  double peak_ratio = 0.0;     ///< |R| at its greatest over |R| beside it
 };
 
 /// `used`: frequencies that count, such as excited(); both responses are of the same frequencies.
 /// None without a clear peak in their midst: |R| more than twice that beside it, lightly damped,
 /// and explained by the poles many times better than without. A peak whose half-power width 2 d f
-/// is below three steps of the spectrum is not told from a spectral line: none either.
+/// is below three steps of the spectrum is not told from a spectral line: none either, nor is a
+/// lower peak looked at then.
 [[nodiscard]] std::optional<Resonance> resonance(const FrequencyResponse& measured,
                                                  const FrequencyResponse& model,
                                                  const std::vector<bool>& used);

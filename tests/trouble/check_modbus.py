@@ -14,13 +14,12 @@ import random
 import select
 import socket
 import struct
-import subprocess
 import sys
 import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from stand import Daemon  # noqa: E402
+from stand import BenchRig, Daemon  # noqa: E402
 
 READ, WRITES = 3, (6, 16)
 COMMAND, POSITION, E_STOP = 2, 4, 11
@@ -287,16 +286,8 @@ def main():
     parser.add_argument("config", type=pathlib.Path)
     parser.add_argument("--only", default="")
     options = parser.parse_args()
-    rig = subprocess.Popen([str(options.programs / "spoolwatch-rig"), "--config",
-                            str(options.config / "bench_rig.toml"), "--set", "bus.listen=127.0.0.1:0"],
-                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    try:
-        line = ""
-        while "127.0.0.1:" not in line:
-            line = rig.stdout.readline()
-        port = int(line.split("127.0.0.1:")[1].split()[0].rstrip(".,;"))
-        threading.Thread(target=rig.stdout.read, daemon=True).start()
-        proxy = Proxy(port)
+    with BenchRig(options.programs, options.config) as rig:
+        proxy = Proxy(rig.port)
         settings = [f"modbus.address=127.0.0.1:{proxy.port}", "modbus.timeout_s=0.03",
                     "modbus.watchdog_s=0.3", "modbus.longest_pause_s=0.1", "modbus.read_ahead_s=0",
                     "loop.rate_hz=50", "loop.max_lost_a_minute=1000", "loop.max_lost_in_a_row=50",
@@ -338,9 +329,6 @@ def main():
                 bench.failures.append("memory or files grow")
             if daemon.process.poll() is not None:
                 bench.failures.append("the daemon ended")
-    finally:
-        rig.terminate()
-        rig.wait()
     print(*bench.failures, sep="\n")
     sys.exit(1 if bench.failures else 0)
 

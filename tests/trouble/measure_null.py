@@ -20,7 +20,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from check_modbus import TROUBLES, Bench, Proxy, eventually, whole  # noqa: E402
-from stand import Daemon  # noqa: E402
+from stand import BenchRig, Daemon  # noqa: E402
 
 NULL_V = 0.01  # two steps of the converter
 FAR_V = 2.0
@@ -131,8 +131,9 @@ class Measurement:
             self.failures.append(f"{name}: not at null within {WATCHED_S} s, {state}")
             return
         least, most = max((one[:2] for one in seen), key=lambda one: one[1])
-        if max(one[0] for one in seen) > self.rows[row]:
-            self.failures.append(f"{name}: null after {least * 1e3:.1f} ms, stated "
+        latest = max(one[0] for one in seen)
+        if latest > self.rows[row]:
+            self.failures.append(f"{name}: null after {latest * 1e3:.1f} ms, stated "
                                  f"{self.rows[row] * 1e3:.1f} ({row})")
         print(f"{name} | {row} | {self.rows[row] * 1e3:.1f} | {least * 1e3:.1f} to "
               f"{most * 1e3:.1f} | {state}", flush=True)
@@ -145,16 +146,8 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--runs", type=int, default=3)
     options = parser.parse_args()
-    rig = subprocess.Popen([str(options.programs / "spoolwatch-rig"), "--config",
-                            str(options.config / "bench_rig.toml"), "--set", "bus.listen=127.0.0.1:0"],
-                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    try:
-        line = ""
-        while "127.0.0.1:" not in line:
-            line = rig.stdout.readline()
-        port = int(line.split("127.0.0.1:")[1].split()[0].rstrip(".,;"))
-        threading.Thread(target=rig.stdout.read, daemon=True).start()
-        proxy, watcher = Proxy(port), Watcher(port)
+    with BenchRig(options.programs, options.config) as rig:
+        proxy, watcher = Proxy(rig.port), Watcher(rig.port)
         config = options.config / "bench_modbus.toml"
         settings = [f"modbus.address=127.0.0.1:{proxy.port}", *SETTINGS]
         rows = stated(options.programs, config, settings)
@@ -164,9 +157,6 @@ def main():
             for name, spoil in TROUBLES.items():
                 if options.only in name:
                     measurement.measure(name, spoil, options.runs)
-    finally:
-        rig.terminate()
-        rig.wait()
     print(*measurement.failures, sep="\n", file=sys.stderr)
     sys.exit(1 if measurement.failures else 0)
 

@@ -1,4 +1,4 @@
-"""A daemon on the simulated rig, in a folder of its own, and requests on its control socket."""
+"""A daemon in a folder of its own with requests on its control socket, and the Modbus bench rig."""
 import json
 import os
 import pathlib
@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import tempfile
+import threading
 import time
 
 
@@ -62,3 +63,27 @@ class Daemon:
             if line.startswith("VmRSS"):
                 return int(line.split()[1])
         return 0
+
+
+class BenchRig:
+    """spoolwatch-rig on a port of loopback; ends with the `with` block."""
+
+    def __init__(self, programs, config):
+        self.process = subprocess.Popen(
+            [str(programs / "spoolwatch-rig"), "--config", str(config / "bench_rig.toml"),
+             "--set", "bus.listen=127.0.0.1:0"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def __enter__(self):
+        printed = []
+        for line in self.process.stdout:
+            printed.append(line)
+            if "127.0.0.1:" in line:
+                self.port = int(line.split("127.0.0.1:")[1].split()[0].rstrip(".,;"))
+                threading.Thread(target=self.process.stdout.read, daemon=True).start()
+                return self
+        raise RuntimeError("the rig has ended: " + "".join(printed))
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait()

@@ -39,7 +39,7 @@ using model::Question;
 struct NewOptions {
   std::string kind, name, output;
   bool ask = false;
-  std::map<std::string, std::string> given;  ///< as typed, by flag
+  std::map<std::string, std::string> given;  ///< texts by flag
 };
 
 /// Throws for a text that is no number. A flag of another kind is left to check_answers().
@@ -117,7 +117,6 @@ class QuestionOptions {
   /// `group`: heading of the help; null: the usual one.
   void add(const Question& q, const char* group) {
     if (!known_.insert(q.flag).second) return;
-    const bool is_number = q.form == questions::Form::number || q.form == questions::Form::whole;
     const std::string choices =
         q.form == questions::Form::choice ? ": " + questions::allowed(q) : "";
     CLI::Option* option = command_.add_option_function<std::string>(
@@ -126,7 +125,7 @@ class QuestionOptions {
           options->given[flag] = text;
         },
         q.what + choices + " (" + q.where + ")");
-    option->type_name(is_number ? "FLOAT" : "TEXT");
+    option->type_name(q.is_number() ? "FLOAT" : "TEXT");
     if (group != nullptr) option->group(group);
   }
 

@@ -18,6 +18,10 @@ namespace fs = std::filesystem;
 class Draft {
  public:
   Draft(const std::string& file, const std::string& text) : file_(file), draft_(file + ".part") {
+    if (fs::exists(draft_)) {
+      throw config::schema::UsageError("new stand: " + draft_.string() +
+                                       " is in the way; allowed: a FILE without a FILE.part");
+    }
     config::record::write_whole(draft_, text);
   }
   ~Draft() {

@@ -12,9 +12,9 @@ inline constexpr const char* kStandKind = "stand";
 struct NewStandOptions {
   std::string output;
   std::string name;     ///< empty: the file's
-  std::string command;  ///< as it can be typed again
+  std::string command;  ///< can be typed again
   bool ask = false;
-  std::map<std::string, std::string> given;  ///< as typed, by flag
+  std::map<std::string, std::string> given;  ///< texts by flag
 };
 
 /// Writes the file once the daemon has checked it. Throws config::schema::UsageError for answers

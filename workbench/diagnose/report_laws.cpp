@@ -16,7 +16,7 @@ using present::Plot;
 using present::Series;
 using present::Tone;
 
-/// What is left without the law, where that is a force over a variable that is measured.
+/// The remainder without the law, where that is a force over a variable that is measured.
 Series points_of(const DiagnosisReport& outcome, const LearnedLaw& learned) {
   const greybox::FitDataset& data = outcome.prepared->problem.data;
   plant_sim::ModelFile without = outcome.diagnosis.better;

@@ -15,7 +15,7 @@ namespace workbench::diagnose {
 [[nodiscard]] present::Section where_section(const DiagnosisReport& outcome);
 /// The laws that were learned, as curves; at least one.
 [[nodiscard]] present::Section laws_section(const DiagnosisReport& outcome);
-/// What each step takes away; none for fewer than two steps.
+/// The part that each step takes away; none for fewer than two steps.
 [[nodiscard]] std::optional<present::Section> steps_section(const DiagnosisReport& outcome);
 /// One section for each record.
 [[nodiscard]] std::vector<present::Section> record_sections(const DiagnosisReport& outcome);

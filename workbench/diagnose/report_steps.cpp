@@ -23,7 +23,7 @@ constexpr std::size_t kMostSteps = 4;
 struct Stage {
   std::vector<std::string> added;
   plant_sim::ModelFile model;
-  std::vector<double> residual_m;  ///< of the first record
+  std::vector<double> residual_m;  ///< the first record's
 };
 
 /// The stages that the search has kept, the first without effect, the last the better model.

@@ -37,7 +37,7 @@ struct NamedValues {
 /// not, as a second mass behind a spring does."
 [[nodiscard]] std::string resonance_words(const estimator::spectra::Resonance& found);
 
-/// What the plots above show, for the head of their section.
+/// The meaning of the plots above, for the head of their section.
 inline constexpr const char* kDynamicsMeaning =
     "Response: how the speed answers the command, by frequency, measured and simulated over the "
     "same windows (Welch, H1). The band is two standard errors by the coherence. Only what the "

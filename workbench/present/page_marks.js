@@ -1,4 +1,4 @@
-// What Chart.js draws besides the series: bands of uncertainty, levels across the plot, figures at
+// Chart.js draws besides the series: bands of uncertainty, levels across the plot, figures at
 // bars and steps, and a word where there is nothing to draw. Series and colours: page_series.js.
 
 // The band about a line: its uncertainty, below every series.

@@ -17,11 +17,9 @@ namespace {
 
 using config::schema::UsageError;
 
-bool is_number(const Question& q) { return q.form == Form::number || q.form == Form::whole; }
-
 /// Throws UsageError for an answer that is not allowed.
 void check(const std::string& place, const Question& q, const std::string& text) {
-  if (is_number(q)) {
+  if (q.is_number()) {
     check_range(place, q, number_answer(place, q, text));
   } else {
     check_text(place, q, text);
@@ -67,13 +65,13 @@ std::string allowed(const Question& q) {
 }
 
 std::string usual_answer(const Question& q) {
-  if (!is_number(q)) return q.usual_text;
+  if (!q.is_number()) return q.usual_text;
   if (std::isnan(q.usual)) return "";
   return q.form == Form::whole ? fmt::format("{}", q.usual) : config::units::three_digits(q.usual);
 }
 
 bool must_be_given(const Question& q) {
-  return is_number(q) ? std::isnan(q.usual) : q.usual_text.empty() && !q.may_be_empty;
+  return q.is_number() ? std::isnan(q.usual) : q.usual_text.empty() && !q.may_be_empty;
 }
 
 double number_answer(const std::string& place, const Question& q, const std::string& text) {

@@ -24,9 +24,11 @@ struct Question {
   double max = 0.0;
   double usual = 0.0;  ///< NaN: there is none, it must be given
   Form form = Form::number;
-  std::vector<std::string> choices{};  ///< of a choice
-  std::string usual_text{};            ///< of a choice or text; empty: it must be given
-  bool may_be_empty = false;           ///< of a text: empty stands for "none"
+  std::vector<std::string> choices{};  ///< a choice's
+  std::string usual_text{};            ///< a choice's or text's; empty: it must be given
+  bool may_be_empty = false;           ///< a text's: empty stands for "none"
+
+  [[nodiscard]] bool is_number() const { return form == Form::number || form == Form::whole; }
 };
 
 [[nodiscard]] Question whole_question(std::string flag, std::string what, std::string where,
@@ -40,7 +42,7 @@ struct Question {
 /// The whole text as a number.
 [[nodiscard]] std::optional<double> number_in(const std::string& text);
 
-/// What may be answered: "1 to 990", "sim, modbus".
+/// The answers that are taken: "1 to 990", "sim, modbus".
 [[nodiscard]] std::string allowed(const Question& question);
 /// The usual answer as it would be typed; empty: none, or none is needed.
 [[nodiscard]] std::string usual_answer(const Question& question);

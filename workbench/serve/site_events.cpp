@@ -1,4 +1,4 @@
-// What pages learn unasked: the session's state, the progress of jobs, and the daemon's alarms.
+// Pages learn unasked: the session's state, the progress of jobs, and the daemon's alarms.
 #include <chrono>
 #include <iostream>
 

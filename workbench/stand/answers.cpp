@@ -11,9 +11,6 @@ namespace workbench::stand {
 namespace {
 
 using config::schema::UsageError;
-using questions::Form;
-
-bool is_number(const Question& q) { return q.form == Form::number || q.form == Form::whole; }
 
 /// Three digits, as they are shown, within the range.
 double shown(double value, const Question& q) {
@@ -27,7 +24,7 @@ double shown(double value, const Question& q) {
 
 /// Takes the answer as typed. Throws UsageError.
 void take(Answers& answers, const Question& q, const std::string& text) {
-  if (is_number(q)) {
+  if (q.is_number()) {
     const double value = questions::number_answer(kPlace, q, text);
     questions::check_range(kPlace, q, value);
     answers.set(q.flag, value);
@@ -38,7 +35,7 @@ void take(Answers& answers, const Question& q, const std::string& text) {
 }
 
 void take_usual(Answers& answers, const Question& q) {
-  if (is_number(q)) {
+  if (q.is_number()) {
     answers.set(q.flag, q.usual);
   } else {
     answers.set(q.flag, q.usual_text);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <iosfwd>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +29,11 @@ class Answers {
   [[nodiscard]] bool is(const std::string& flag, const char* text) const;
   /// A line or register of that number exists: asked, and not -1.
   [[nodiscard]] bool has(const std::string& flag) const { return number(flag) >= 0.0; }
+
+  /// A switch of the rig is read or driven: "e-stop", "enable", "permit".
+  [[nodiscard]] bool has_switch(const std::string& role) const {
+    return has(role + "-register") || has(role + "-line");
+  }
 
   [[nodiscard]] bool sim() const { return is("backend", "sim"); }
   [[nodiscard]] bool modbus() const { return is("backend", "modbus"); }
@@ -63,14 +67,14 @@ struct StandQuestion {
 /// All questions, in the order in which they are asked.
 [[nodiscard]] const std::vector<StandQuestion>& stand_questions();
 
-// Those of one subject each.
+// The questions of one subject each.
 [[nodiscard]] std::vector<StandQuestion> rig_questions();
 [[nodiscard]] std::vector<StandQuestion> guard_questions();
 [[nodiscard]] std::vector<StandQuestion> simulated_questions();
 [[nodiscard]] std::vector<StandQuestion> modbus_questions();
 [[nodiscard]] std::vector<StandQuestion> board_questions();
 
-using Given = std::map<std::string, std::string>;  ///< as typed, by flag
+using Given = std::map<std::string, std::string>;  ///< texts by flag
 
 /// The answers: given, asked on `in` and `out` where they are not null, or usual. Throws
 /// config::schema::UsageError for an answer that is none, a flag that these answers do not ask for,

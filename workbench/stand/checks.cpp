@@ -87,7 +87,7 @@ struct Reach {
   double low, high, step;
 };
 
-/// What a register of that type can hold, in the unit of the scale.
+/// The numbers that a register of that type can hold, in the unit of the scale.
 Reach reach(const std::string& type, double scale, double offset) {
   const bool wide = type == "int32" || type == "uint32";
   const double span = std::ldexp(1.0, wide ? 32 : 16);

@@ -67,10 +67,10 @@ void inputs(TomlWriter& w, const Answers& a) {
     w.text("backend", backend);
     w.text("channel", channel);
   };
-  if (a.sim() || a.has("e-stop-register") || a.has("e-stop-line")) {
+  if (a.sim() || a.has_switch("e-stop")) {
     input("e_stop", "e_stop", position_backend(a), "1 while released, anything else trips");
   }
-  if (a.has("enable-register") || a.has("enable-line")) {
+  if (a.has_switch("enable")) {
     input("enable", "enable", position_backend(a), "1 while motion is allowed");
   }
   if (!a.driven()) input("valve_command", "command", board_backend(a), "the other controller's");
@@ -81,7 +81,7 @@ void inputs(TomlWriter& w, const Answers& a) {
     input("pressure_in", "pressure_in", board_backend(a), "Pa, chamber that extends");
     input("pressure_out", "pressure_out", board_backend(a), "Pa, chamber that retracts");
   }
-  if (a.sim() || a.has("permit-register") || a.has("permit-line")) {
+  if (a.sim() || a.has_switch("permit")) {
     w.table("permit", "toggled by every good period, for a watchdog relay");
     w.text("backend", position_backend(a));
     w.text("channel", "permit");

@@ -9,7 +9,7 @@
 namespace workbench::stand {
 
 struct StandFile {
-  std::string name;     ///< of the rig, in health messages
+  std::string name;     ///< the rig's, in health messages
   std::string file;     ///< where it will stand: relative paths in it start there
   std::string command;  ///< how to make it again
 };
@@ -17,7 +17,7 @@ struct StandFile {
 /// The commented file. Requires checked answers.
 [[nodiscard]] std::string configuration_text(const Answers& answers, const StandFile& file);
 
-/// What is still to be commissioned, in the order in which to do it. `file`: the configuration.
+/// Steps of commissioning still to be done, in their order. `file`: the configuration.
 [[nodiscard]] std::vector<std::string> to_commission(const Answers& answers,
                                                      const std::string& file);
 

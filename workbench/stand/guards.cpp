@@ -1,4 +1,4 @@
-// What the guards of a stand are asked, and the [[guard]] tables that follow.
+// The questions about a stand's guards, and the [[guard]] tables that follow.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -28,12 +28,12 @@ void unconfirmed(const Answers& a, std::vector<std::string>& steps) {
 }
 
 void switches(const Answers& a, std::vector<std::string>& steps) {
-  if (a.has("e-stop-register") || a.has("e-stop-line")) {
+  if (a.has_switch("e-stop")) {
     steps.emplace_back("press the e-stop, and pull its wire: status must say LATCHED each time");
   } else {
     steps.emplace_back("no e-stop input: the rig's e-stop must take the energy away by itself");
   }
-  if (a.has("enable-register") || a.has("enable-line")) {
+  if (a.has_switch("enable")) {
     steps.emplace_back("open the enable switch: arming must be refused");
   }
 }
@@ -46,7 +46,7 @@ void watchdog(const Answers& a, std::vector<std::string>& steps) {
         a.number("watchdog-ms"),
         a.has("watchdog-register") ? "" : "; the time-out is set in the device, not from here"));
   }
-  if (a.has("permit-register") || a.has("permit-line")) {
+  if (a.has_switch("permit")) {
     steps.emplace_back(
         "kill the daemon in RUN (kill -9) at low pressure: the watchdog relay must "
         "drop, and the valve with it");

@@ -22,8 +22,8 @@ constexpr double kSmall = 0.05;
 /// Share of a column that must remain beside the model's own freedom.
 constexpr double kVisible = 1e-6;
 
-/// Sensitivities of the innovations, in standard deviations, to parameters, and beneath them those
-/// of the distances from the priors of the model's own.
+/// Sensitivities to parameters, in standard deviations: of the innovations, and beneath them of the
+/// distances that the model's own parameters keep from their priors.
 struct Columns {
   std::vector<FreeParameter> parameters;
   std::vector<bool> absent;

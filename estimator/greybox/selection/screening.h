@@ -31,7 +31,8 @@ struct ModelStage {
 
 struct ScreeningResult {
   std::string effect;
-  /// Expected validation RMS relative to the stage's; 1 = no gain.
+  /// Root of the cost expected with the effect, squares and priors, over the stage's: that of the
+  /// errors where no parameter is strained; 1 = no gain.
   double expected_ratio = 1.0;
   std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
   std::vector<Eigen::VectorXd> starts;    ///< starting points, most promising first

@@ -36,7 +36,7 @@ inline constexpr double kRivals = 0.05;
 
 struct Candidate {
   std::vector<std::string> effects;  ///< one, or a pair
-  double expected_ratio = 1.0;       ///< by the screening; 1 for pairs
+  double expected_ratio = 1.0;       ///< by the screening (ScreeningResult); 1 for pairs
   FitSummary fitted;                 ///< with the stage's parameters
   double validation_rms_m = std::numeric_limits<double>::infinity();
   double p_value = 1.0;  ///< probability that the gain over the stage is chance

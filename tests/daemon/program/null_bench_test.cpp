@@ -22,7 +22,7 @@ struct Failure {
   bool by_cable = false;        ///< the daemon reaches the rig by the cable
   bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
   std::vector<std::string> set{};
-  const char* action{"-"};  ///< of the guard that acts
+  const char* action{"-"};  ///< the acting guard's
 };
 
 /// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two

@@ -6,24 +6,19 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <random>
+
+#include "tests/estimator/spectra/white_noise.h"
 
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kSampleTime_s = 0.005;
+using spectra_test::white_noise;
 
-std::vector<double> noise(std::size_t n, double sd, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, sd);
-  std::vector<double> values(n);
-  for (double& value : values) value = normal(random);
-  return values;
-}
+constexpr double kSampleTime_s = 0.005;
 
 TEST(SpeedResponse, OfALagAfterAnIntegratorIsItsTransferFunction) {
   // v(k+1) = 0.6 v(k) + 0.02 u(k), y(k+1) = y(k) + T v(k): the speed of sample k is v(k)
-  const std::vector<double> u_V = noise(12000, 1.0, 1);
+  const std::vector<double> u_V = white_noise(12000, 1.0, 1);
   std::vector<double> y_m{0.3};
   double v_mps = 0.0;
   for (std::size_t k = 0; k + 1 < u_V.size(); ++k) {
@@ -40,8 +35,8 @@ TEST(SpeedResponse, OfALagAfterAnIntegratorIsItsTransferFunction) {
 }
 
 TEST(SpeedResponse, LeavesOutWhatDoesNotCount) {
-  const std::vector<double> u_V = noise(4000, 1.0, 2);
-  std::vector<double> y_m = noise(4000, 1e-6, 3);
+  const std::vector<double> u_V = white_noise(4000, 1.0, 2);
+  std::vector<double> y_m = white_noise(4000, 1e-6, 3);
   Dataset record = dataset_of(kSampleTime_s, u_V, y_m);
   std::vector<double> with_spike = y_m;
   std::size_t first = 0;
@@ -82,8 +77,8 @@ TwoMasses two_masses(double resonance_Hz, double damping_ratio) {
   constexpr double kShare = 0.3;
   const double w = 2.0 * std::numbers::pi * resonance_Hz;
   const double step_s = kSampleTime_s / kSubsteps;
-  const std::vector<double> level = noise(12000, 2.0, 9);
-  const std::vector<double> sensor_m = noise(12000, 1e-6, 10);
+  const std::vector<double> level = white_noise(12000, 2.0, 9);
+  const std::vector<double> sensor_m = white_noise(12000, 1e-6, 10);
   TwoMasses out;
   double x = 0.0, v = 0.0, z = 0.0, zv = 0.0, r = 0.0, rv = 0.0;
   for (std::size_t k = 0; k < level.size(); ++k) {
@@ -129,7 +124,7 @@ TEST(MissingResonance, OfTwoMassesIsTheirsWithinItsErrors) {
 
 /// y' = 0.05 u + disturbance in a loop u = 40 V/m (reference - reading).
 Dataset in_a_loop(double noise_m, double line_mps, double line_Hz) {
-  const std::vector<double> sensor_m = noise(12000, noise_m, 21);
+  const std::vector<double> sensor_m = white_noise(12000, noise_m, 21);
   std::vector<double> u_V;
   std::vector<double> read_m;
   double y_m = 0.3;
@@ -162,7 +157,7 @@ TEST(Excited, NoiseThatTheControllerFeedsBackIsNoExcitation) {
 TEST(MissingResonance, IsNoSpectralLineInALoop) {
   for (const double line_Hz : {7.3, 23.0, 50.0}) {
     const Dataset record = in_a_loop(1e-6, 0.02, line_Hz);
-    std::vector<double> error_m;  // of the model y' = 0.05 u
+    std::vector<double> error_m;  // the model is y' = 0.05 u
     double model_m = record.y_m.front();
     for (std::size_t k = 0; k < record.size(); ++k) {
       error_m.push_back(record.y_m[k] - model_m);

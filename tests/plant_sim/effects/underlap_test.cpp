@@ -7,8 +7,8 @@ namespace plant_sim::testing {
 namespace {
 
 constexpr double kHalfWidth_V = 0.2;
-constexpr double kSettled_s = 4.0;   // of the slowest mode, the mean pressure
-constexpr double kUnsettled = 1e-6;  // of a speed after that time
+constexpr double kSettled_s = 4.0;   // the slowest mode, the mean pressure, ends by then
+constexpr double kUnsettled = 1e-6;  // a speed's change after that time
 
 std::unique_ptr<Actuator> underlapped(double half_width_V = kHalfWidth_V) {
   auto plant = at_rest();

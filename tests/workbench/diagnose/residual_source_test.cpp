@@ -15,7 +15,7 @@ namespace {
 constexpr double kSampleTime_s = 0.005;
 constexpr double kRate = 3.0;  ///< rad/s: a parabola over 100 ms follows it
 constexpr double kSize_m = 1e-3;
-/// What the parabola takes off: (rate half window)^2 / 10 of the slope, and some of the curvature.
+/// The parabola takes off (rate half window)^2 / 10 of the slope, and some of the curvature.
 constexpr double kSmoothing = 0.005;
 
 struct Wave {

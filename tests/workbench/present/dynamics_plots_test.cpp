@@ -1,28 +1,22 @@
 // Plots by frequency, of series whose spectra are written down.
 #include "workbench/present/dynamics_plots.h"
+#include "tests/estimator/spectra/white_noise.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace workbench::present {
 namespace {
+
+using spectra_test::white_noise;
 
 using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr double kSampleTime_s = 0.005;
 constexpr double kGain_mps_per_V = 0.05;
-
-std::vector<double> noise(std::size_t n, double sd, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, sd);
-  std::vector<double> values(n);
-  for (double& value : values) value = normal(random);
-  return values;
-}
 
 /// An integrator: its speed is the gain times the command at every frequency.
 estimator::greybox::Dataset integrator(const std::vector<double>& u_V) {
@@ -34,7 +28,7 @@ estimator::greybox::Dataset integrator(const std::vector<double>& u_V) {
 }
 
 TEST(DynamicsPlots, AResponseIsLevelForAnIntegratorAndLiesInItsBand) {
-  const auto record = integrator(noise(6000, 1.0, 1));
+  const auto record = integrator(white_noise(6000, 1.0, 1));
   const std::vector<Plot> plots =
       response_plots(record, {{"model", Tone::model, record.y_m}}, 1e-6);
   ASSERT_THAT(plots, SizeIs(2));
@@ -53,20 +47,21 @@ TEST(DynamicsPlots, AMotionOfOneFrequencyHasNoResponseElsewhere) {
   std::vector<double> u_V;
   for (int k = 0; k < 6000; ++k) u_V.push_back(std::sin(2.0 * std::numbers::pi * 0.01 * k));
   auto record = integrator(u_V);
-  const std::vector<double> sensor_m = noise(6000, 1e-5, 2);
+  const std::vector<double> sensor_m = white_noise(6000, 1e-5, 2);
   for (std::size_t k = 0; k < record.size(); ++k) record.y_m[k] += sensor_m[k];
   // the main lobe of the windows, which are 5.12 s long, and some steps of it
   for (const Plot& plot : response_plots(record, {}, 1e-5)) {
     for (const double f_Hz : plot.series[0].x) EXPECT_NEAR(f_Hz, 2.0, 1.0);
   }
-  record.u_V = noise(6000, 1.0, 5);  // and nothing is known of a command that does not act
+  record.u_V = white_noise(6000, 1.0, 5);  // and nothing is known of a command that does not act
   EXPECT_THAT(response_plots(record, {}, 1e-5), IsEmpty());
 }
 
 TEST(DynamicsPlots, WhiteResidualsLieAtTheNoiseFloorAndWithinTheirBound) {
   constexpr double kNoise_m = 2e-6;
-  const auto record = integrator(noise(20000, 1.0, 3));
-  const std::vector<NamedValues> residual{{"residual", Tone::residual, noise(20000, kNoise_m, 4)}};
+  const auto record = integrator(white_noise(20000, 1.0, 3));
+  const std::vector<NamedValues> residual{
+      {"residual", Tone::residual, white_noise(20000, kNoise_m, 4)}};
   const Plot spectrum = spectrum_plot(record, residual, kNoise_m);
   ASSERT_THAT(spectrum.lines, SizeIs(1));
   double mean_square = 0.0;

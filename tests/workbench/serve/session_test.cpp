@@ -1,4 +1,4 @@
-// What a session keeps: names, files and its state, after refused changes too.
+// A session keeps names, files and its state, after refused changes too.
 #include <functional>
 
 #include "config/schema/error.h"

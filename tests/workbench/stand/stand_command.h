@@ -16,7 +16,7 @@ using Flags = std::map<std::string, std::string>;
 
 inline constexpr const char* kBackends[] = {"sim", "modbus", "comedi"};
 
-/// What must be given, and nothing else: a stand with 200 mm of travel.
+/// The answers that must be given, and no other: a stand with 200 mm of travel.
 inline Flags least_flags(const std::string& backend) {
   Flags flags{
       {"backend", backend}, {"low-mm", "200"}, {"high-mm", "400"}, {"max-speed-mmps", "450"}};

@@ -54,7 +54,7 @@ TEST(BatchNewton, EndsAtABoundWithTheOthersAtTheirMinimumThere) {
   bounds.upper[0] = 0.5;
   const Minimum found = from(SearchPoint(-2.0, -2.0, 0.0, 0.0), valley, bounds);
   EXPECT_DOUBLE_EQ(found.at[0], 0.5);
-  // of 500 (0.5 - x)^2 + (x - 1.5)^2
+  // the minimum of 500 (0.5 - x)^2 + (x - 1.5)^2
   EXPECT_NEAR(found.at[1], (250.0 + 1.5) / 501.0, 0.02);
   EXPECT_NEAR(found.at[2], 3.0, 0.02);
 }

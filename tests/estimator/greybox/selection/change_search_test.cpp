@@ -50,6 +50,22 @@ TEST(Changes, AGainThatStepsIsDatedToASample) {
   EXPECT_NEAR(d.better.changes.front().value, 1.03 * kServoGain, 1e-4);
 }
 
+TEST(Changes, AKnownGainThatStepsIsScoredAsAStep) {
+  SearchContext context =
+      changing_servo([](double t_s) { return t_s < 12.3 ? 1.0 : 1.25; }, nothing);
+  for (FreeParameter& p : context.problem.plant_parameters) {
+    if (p.name == "gain_mps_per_V") p.prior_sd = 0.002;
+  }
+  ModelStage first = first_stage(context);
+  const InnovationStage stage = settled(context, first, {}, 1, {});
+  const std::vector<ChangeScore> scores = change_scores(stage);
+  ASSERT_FALSE(scores.empty());
+  EXPECT_EQ(scores.front().parameter.name, "gain_mps_per_V");
+  EXPECT_EQ(scores.front().kind, ChangeKind::step);
+  EXPECT_NEAR(scores.front().at_s, 12.3, 0.3);
+  EXPECT_NEAR(scores.front().by, std::log(1.25), 0.05);
+}
+
 TEST(Changes, AGainThatDriftsIsARamp) {
   const SearchContext context =
       changing_servo([](double t_s) { return 1.0 + 0.04 * t_s / 20.0; }, nothing);

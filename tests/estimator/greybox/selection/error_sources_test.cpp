@@ -1,4 +1,4 @@
-// What standard errors contain beside the noise, on records of the independent simulator.
+// Standard errors contain more than the noise, on records of the independent simulator.
 #include <gtest/gtest.h>
 
 #include <cmath>
