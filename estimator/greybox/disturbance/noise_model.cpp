@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "estimator/greybox/disturbance/batch_newton.h"
+#include "estimator/greybox/disturbance/simulated_lines.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
@@ -81,15 +82,16 @@ MatrixXd line_responses(const Linearisation& model, const Dataset& record,
   return columns;
 }
 
-/// The lines' part of the readings of record r.
-VectorXd known_lines_m(const Linearisation& model, const Dataset& record, std::size_t r,
+/// The known lines' part of the readings of record r; empty: none is known.
+VectorXd known_lines_m(const plant_sim::ModelFile& model, const Dataset& record, std::size_t r,
+                       const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                        const NoiseModel& noise) {
-  VectorXd sum_m;
-  for (std::size_t i = 0; i < noise.waves.size(); ++i) {
-    const VectorXd one_m = line_reading_m(model, record, noise.lines[i], noise.waves[i][r]);
-    sum_m = sum_m.size() > 0 ? VectorXd(sum_m + one_m) : one_m;
-  }
-  return sum_m;
+  if (noise.waves.empty()) return {};
+  std::vector<SpectralLine> known(noise.lines.begin(),
+                                  noise.lines.begin() + static_cast<Index>(noise.waves.size()));
+  std::vector<Eigen::Vector2d> waves;
+  for (const std::vector<Eigen::Vector2d>& of_line : noise.waves) waves.push_back(of_line[r]);
+  return simulated_lines_m(model, record, parameters, theta, known, waves);
 }
 
 /// Columns of very different sizes (m per Pa, per N) scaled alike before their rank is judged.
@@ -112,7 +114,7 @@ class Likelihood {
       plain.innovations.reset();
     }
     for (const Dataset& record : records_) {
-      line_m_.push_back(known_lines_m(models[runs_.size()], record, runs_.size(), noise));
+      line_m_.push_back(known_lines_m(model, record, runs_.size(), parameters, theta, noise));
       runs_.emplace_back(model, record, parameters);
     }
   }
@@ -176,15 +178,16 @@ Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& da
   return models;
 }
 
-InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
-                               const NoiseModel& noise) {
+InnovationData innovation_data(const plant_sim::ModelFile& model, const FitDataset& data,
+                               const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                               const Linearisations& models, const NoiseModel& noise) {
   InnovationData result{data, 0.0};
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     Dataset& record = result.data.records[r];
     KalmanGains gains = kalman_gains(models[r], record, noise.noise, data.noise_floor_m);
     if (!noise.lines.empty()) {
       gains.gains.lines = basis_of(line_responses(models[r], record, gains.gains, noise.lines));
-      gains.gains.line_m = known_lines_m(models[r], record, r, noise);
+      gains.gains.line_m = known_lines_m(model, record, r, parameters, theta, noise);
     }
     result.log_determinant += gains.log_determinant;
     record.innovations = std::make_shared<const InnovationGains>(std::move(gains.gains));

@@ -40,8 +40,12 @@ struct InnovationData {
   FitDataset data;
   double log_determinant = 0.0;  ///< KalmanGains', over all records
 };
-[[nodiscard]] InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
-                                             const NoiseModel& noise);
+/// `models`: linearised with `theta`.
+[[nodiscard]] InnovationData innovation_data(const plant_sim::ModelFile& model,
+                                             const FitDataset& data,
+                                             const std::vector<FreeParameter>& parameters,
+                                             const Eigen::VectorXd& theta,
+                                             const Linearisations& models, const NoiseModel& noise);
 
 /// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must
 /// come from `noise`.

@@ -114,13 +114,9 @@ const char* to_string(LineSite site) {
   return "sensor";
 }
 
-namespace {
-
-/// Calls take(k, e) with the errors that a unit sine and a unit cosine cause; `gains` null: of a
-/// plant that nothing corrects.
-template <typename Take>
-void follow_line(const Linearisation& model, const Dataset& record, const InnovationGains* gains,
-                 const SpectralLine& line, Take take) {
+MatrixXd line_response(const Linearisation& model, const Dataset& record,
+                       const InnovationGains& gains, const SpectralLine& line) {
+  MatrixXd result(static_cast<Index>(record.size()), 2);
   using Pair = Eigen::Matrix<double, kMostStates, 2>;
   Pair z = Pair::Zero();
   std::size_t segment = 0;
@@ -134,34 +130,12 @@ void follow_line(const Linearisation& model, const Dataset& record, const Innova
     Eigen::RowVector2d e = z.row(0);
     if (line.site == LineSite::sensor) e += w;
     const auto k = static_cast<Index>(row);
-    take(k, e);
-    if (gains != nullptr) {
-      z -= gain_at(*gains, k) * e;
-      z = (transition_at(model, *gains, row) * z).eval();
-    } else {
-      z = (model.transition[row] * z).eval();
-    }
+    const double counts = record.valid[row] != 0 ? 1.0 : 0.0;
+    result.row(k) = counts * gains.scale[k] * e;
+    z -= gain_at(gains, k) * e;
+    z = (transition_at(model, gains, row) * z).eval();
     if (line.site != LineSite::sensor) z += input_of(model, line.site, row) * w;
   }
-}
-
-}  // namespace
-
-MatrixXd line_response(const Linearisation& model, const Dataset& record,
-                       const InnovationGains& gains, const SpectralLine& line) {
-  MatrixXd result(static_cast<Index>(record.size()), 2);
-  follow_line(model, record, &gains, line, [&](Index k, const Eigen::RowVector2d& e) {
-    const double counts = record.valid[static_cast<std::size_t>(k)] != 0 ? 1.0 : 0.0;
-    result.row(k) = counts * gains.scale[k] * e;
-  });
-  return result;
-}
-
-VectorXd line_reading_m(const Linearisation& model, const Dataset& record, const SpectralLine& line,
-                        const Eigen::Vector2d& wave) {
-  VectorXd result(static_cast<Index>(record.size()));
-  follow_line(model, record, nullptr, line,
-              [&](Index k, const Eigen::RowVector2d& e) { result[k] = e * wave; });
   return result;
 }
 

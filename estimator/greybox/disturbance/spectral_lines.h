@@ -37,10 +37,6 @@ struct SpectralLine {
 [[nodiscard]] Eigen::MatrixXd line_response(const Linearisation& model, const Dataset& record,
                                             const InnovationGains& gains, const SpectralLine& line);
 
-/// Reading (samples, m) that a line moves a plant by which nothing corrects.
-[[nodiscard]] Eigen::VectorXd line_reading_m(const Linearisation& model, const Dataset& record,
-                                             const SpectralLine& line, const Eigen::Vector2d& wave);
-
 /// Amplitudes of sine and cosine of the lines in the units of their sites, fitted together to
 /// scaled innovations from which no line was projected out.
 [[nodiscard]] std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model,

@@ -15,8 +15,11 @@ constexpr std::size_t kLargestGroup = 3;
 constexpr std::size_t kFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
-/// Lag within which a rival with a noise model of its own is polished before it is dismissed.
+/// Lag within which a rival with a noise model of its own is polished before it is dismissed, and
+/// the share of what the effect gains that it may be more: parameters that another model has bent
+/// come back together with the noise model, turn by turn.
 constexpr double kWorthPolishing_nats = 30.0;
+constexpr double kWorthPolishing = 0.1;
 
 ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {
   return subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
@@ -70,21 +73,18 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
   return without;
 }
 
-InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& final,
-                           const std::string& effect, const InnovationStage* without) {
-  InnovationStage own;
-  if (without == nullptr) {
-    own = exchanged(plain, final, effect, "", {});
-    without = &own;
-  }
-  std::vector<InnovationTrial> rivals = effect_trials(*without);
-  add_simulated_starts(*without, simulated_effects(plain, without->model), rivals);
+std::vector<InnovationStage> exchanges(const SearchContext& plain, const InnovationStage& final,
+                                       const std::string& effect, const InnovationStage& without) {
+  std::vector<InnovationTrial> rivals = effect_trials(without);
+  add_simulated_starts(without, simulated_effects(plain, without.model), rivals);
   sort_by_gain(rivals);
   double best = -std::numeric_limits<double>::infinity();
   for (const InnovationTrial& rival : rivals) {
     if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
   }
-  InnovationRivals group{{effect}, {final.model.fitted}};
+  const double worth_polishing_nats =
+      kWorthPolishing_nats + kWorthPolishing * 0.5 * (penalised(without) - penalised(final));
+  std::vector<InnovationStage> found;
   std::size_t tried = 0;
   for (const InnovationTrial& rival : rivals) {
     const std::string& name = rival.candidate.effect;
@@ -92,21 +92,29 @@ InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& fi
     if (std::find(added.begin(), added.end(), name) != added.end()) continue;
     const bool far =
         rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
-    if ((far && !rival.simulated) || ++tried > kFinalists || group.names.size() == kLargestGroup) {
-      continue;
-    }
-    InnovationStage other = settled(plain, *without, rival);
-    const auto behind_nats = [&] { return 0.5 * (penalised(other) - penalised(final)); };
-    if (behind_nats() >= kRivals_nats && behind_nats() < kWorthPolishing_nats) {
+    if ((far && !rival.simulated) || ++tried > kFinalists) continue;
+    InnovationStage other = settled(plain, without, rival);
+    const double behind_nats = 0.5 * (penalised(other) - penalised(final));
+    if (behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats) {
       InnovationStage polished =
           settled(plain, other.model, other.noise, kMostTurns, wide(plain.options.threads));
       if (polished.minus_two_log < other.minus_two_log) other = std::move(polished);
     }
-    if (behind_nats() < kRivals_nats &&
-        !leaves_its_range(other.model.fitted, without->model.fitted.parameters.size())) {
-      group.names.push_back(name);
-      group.explanations.push_back(other.model.fitted);
+    if (!leaves_its_range(other.model.fitted, without.model.fitted.parameters.size())) {
+      found.push_back(std::move(other));
     }
+  }
+  return found;
+}
+
+InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,
+                              const std::vector<InnovationStage>& exchanges) {
+  InnovationRivals group{{effect}, {final.model.fitted}};
+  for (const InnovationStage& other : exchanges) {
+    if (group.names.size() == kLargestGroup) break;
+    if (0.5 * (penalised(other) - penalised(final)) >= kRivals_nats) continue;
+    group.names.push_back(other.model.added.back());
+    group.explanations.push_back(other.model.fitted);
   }
   return group;
 }

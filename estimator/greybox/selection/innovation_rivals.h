@@ -26,9 +26,16 @@ struct InnovationRivals {
 std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
                                        double evidence_nats);
 
-/// The effect and those that explain the record about as well in its place. `without` is the final
-/// stage without it, where known.
-[[nodiscard]] InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& final,
-                                         const std::string& effect, const InnovationStage* without);
+/// The final stage with other effects in the place of one, the most promising first, the other
+/// effect the last of `added`; each settled, and polished where it may be level. Effects that leave
+/// their range are none. `without` is the final stage without the effect.
+[[nodiscard]] std::vector<InnovationStage> exchanges(const SearchContext& plain,
+                                                     const InnovationStage& final,
+                                                     const std::string& effect,
+                                                     const InnovationStage& without);
+
+/// The effect and those of its exchanges that explain the record about as well.
+[[nodiscard]] InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,
+                                            const std::vector<InnovationStage>& exchanges);
 
 }  // namespace estimator::greybox::selection

@@ -212,6 +212,44 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   stage = other;
 }
 
+/// The final stage without effect `i`.
+InnovationStage without_effect(const SearchContext& context, const InnovationSearch& search,
+                               const InnovationStage& final, std::size_t i) {
+  if (search.without.size() > i) return search.without[i];
+  if (final.model.added.size() + final.noise.lines.size() == 1) return search.before;
+  return without(context, final, final.model.added[i]);
+}
+
+/// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
+/// and other effects were not known may have stood for these and another effect together.
+bool exchange(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
+  search.rivals.clear();
+  if (stage.model.added.size() + stage.noise.lines.size() < 2) return false;
+  const std::vector<std::string> added = stage.model.added;
+  for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
+    InnovationStage without = without_effect(context, search, stage, i);
+    std::vector<InnovationStage> others = exchanges(context, stage, added[i], without);
+    search.rivals[added[i]] = rivals_among(stage, added[i], others);
+    std::erase_if(others, [](const auto& other) { return !effect_out_of_range(other).empty(); });
+    const auto best =
+        std::min_element(others.begin(), others.end(),
+                         [](const auto& a, const auto& b) { return penalised(a) < penalised(b); });
+    if (best == others.end() || !(penalised(*best) < penalised(stage))) continue;
+    InnovationCandidate candidate;
+    candidate.effect = best->model.added.back();
+    candidate.settled = true;
+    candidate.penalty_nats = penalty_nats(best->model.fitted, without.model.fitted);
+    candidate.gain_nats = 0.5 * (penalised(without) - penalised(*best));
+    stage = std::move(*best);
+    candidate.fitted = stage.model.fitted;
+    candidate.fitted.jacobian.resize(0, 0);
+    without.model.fitted.jacobian.resize(0, 0);
+    search.rounds.push_back({std::move(without.model), {std::move(candidate)}});
+    return true;
+  }
+  return false;
+}
+
 SearchContext without_holdouts(SearchContext context) {
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
@@ -259,12 +297,19 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
            kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
   };
   std::vector<std::string> dropped;
-  while (!context.cancelled() &&
-         extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds, dropped)) {
-  }
+  const auto extend_fully = [&] {
+    while (!context.cancelled() &&
+           extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds, dropped)) {
+    }
+  };
+  extend_fully();
   take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
-  search.inexact_nats = inexact_nats();
-  search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
+  for (bool exchanged = true; exchanged && !context.cancelled();) {
+    search.inexact_nats = inexact_nats();
+    search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
+    exchanged = exchange(context, search, stage);
+    if (exchanged) extend_fully();
+  }
   note_gains(search, stage);
   search.final = std::move(stage);
   weigh_remainder(context, search);
@@ -310,11 +355,13 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,
         explained_ratio(gain->second, search.curve_nats, count) < kClearOfRemainder) {
       continue;
     }
-    const bool only = added.size() == 1 && search.final.noise.lines.empty();
-    const InnovationStage* without = only                        ? &search.before
-                                     : search.without.size() > i ? &search.without[i]
-                                                                 : nullptr;
-    InnovationRivals group = rivals_of(context, search.final, added[i], without);
+    const auto known = search.rivals.find(added[i]);
+    InnovationRivals group =
+        known != search.rivals.end()
+            ? known->second
+            : rivals_among(search.final, added[i],
+                           exchanges(context, search.final, added[i],
+                                     without_effect(context, search, search.final, i)));
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

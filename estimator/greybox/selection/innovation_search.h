@@ -9,7 +9,9 @@
 //
 // Effects of the library and spectral lines compete in one ladder; a candidate must gain kEvidence
 // more than kPerParameter for each of its parameters. Fits use every sample: white innovations make
-// that valid. Source for the penalty: G. Schwarz, Annals of Statistics 6 (1978) 461.
+// that valid. An effect chosen while others and lines were not known is held against the other
+// effects again at the end, and exchanged where one is likelier. Source for the penalty: G.
+// Schwarz, Annals of Statistics 6 (1978) 461.
 #pragma once
 
 #include <algorithm>
@@ -40,6 +42,8 @@ struct InnovationSearch {
   InnovationStage final;
   std::vector<InnovationRound> rounds;
   std::vector<InnovationStage> without;  ///< `final` without each of its effects, where known
+  /// Per effect what explains the record about as well in its place, where known.
+  std::map<std::string, InnovationRivals> rivals;
   /// Nats that the absence of each effect would cost; where not known, its gain when it was added.
   std::map<std::string, double> gains_nats;
   double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion

@@ -34,8 +34,9 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
 /// are and, as a disturbance that was not known may have bent them, where the model file has them.
 void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
            InnovationFit effort, SimulationWidth width) {
-  const disturbance::InnovationData data =
-      disturbance::innovation_data(plain.problem.data, stage.linear, stage.noise);
+  const disturbance::InnovationData data = disturbance::innovation_data(
+      plain.problem.model, plain.problem.data, stage.model.fitted.parameters,
+      stage.model.fitted.theta, stage.linear, stage.noise);
   stage.context = with_data(plain, data.data);
   ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   FitSummary fitted = fit_innovations(stage.context, all, width, effort);

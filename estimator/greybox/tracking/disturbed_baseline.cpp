@@ -113,7 +113,8 @@ class Learning {
 
  private:
   void fit() {
-    innovations_ = disturbance::innovation_data(data_, models_, noise_).data;
+    innovations_ =
+        disturbance::innovation_data(model_, data_, parameters_, theta_, models_, noise_).data;
     FitOptions options;
     options.passes = 1;
     options.width.threads = threads_;

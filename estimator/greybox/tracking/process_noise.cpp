@@ -138,7 +138,9 @@ std::shared_ptr<const InnovationGains> WindowNoise::gains(const WindowData& data
   data_.noise_floor_m = floor_m;
   const disturbance::Linearisations models =
       disturbance::linearise(model_, data_, parameters_, theta);
-  return disturbance::innovation_data(data_, models, noise).data.records.front().innovations;
+  return disturbance::innovation_data(model_, data_, parameters_, theta, models, noise)
+      .data.records.front()
+      .innovations;
 }
 
 DisturbanceLevel WindowNoise::level(const WindowData& data, const VectorXd& theta,

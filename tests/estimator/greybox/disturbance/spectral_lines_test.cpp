@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "estimator/greybox/disturbance/kalman_gains.h"
+#include "estimator/greybox/disturbance/simulated_lines.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "tests/estimator/greybox/disturbance/axis_record.h"
 
@@ -85,8 +86,9 @@ TEST(SpectralLines, AKnownLineLeavesTheInnovationsOfAStillSensor) {
   const Dataset still = axis_record(1600);
   const Eigen::VectorXd before = innovations(still, s.gains);
   EXPECT_GT((innovations(s.record, s.gains) - before).norm(), 1e-5);
-  s.gains.line_m = line_reading_m(s.model, s.record, {LineSite::sensor, kFrequency_Hz},
-                                  Eigen::Vector2d(3e-5, 4e-5));
+  s.gains.line_m =
+      simulated_lines_m(axis(), s.record, {}, Eigen::VectorXd(),
+                        {{LineSite::sensor, kFrequency_Hz}}, {Eigen::Vector2d(3e-5, 4e-5)});
   EXPECT_LT((innovations(s.record, s.gains) - before).norm(), 1e-9);
 }
 

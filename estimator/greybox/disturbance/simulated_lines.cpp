@@ -1,0 +1,89 @@
+#include "estimator/greybox/disturbance/simulated_lines.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "estimator/greybox/observer_simulation.h"
+#include "plant_sim/ensemble.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using plant_sim::Ensemble;
+
+constexpr std::size_t kPlain = 0;
+constexpr std::size_t kMoved = 1;
+
+/// What the lines amount to at one moment.
+struct LineValues {
+  double force = 0.0;  ///< N, or m/s where the plant has no force
+  double supply_Pa = 0.0;
+  double reading_m = 0.0;
+};
+
+LineValues values_at(double t_s, const std::vector<SpectralLine>& lines,
+                     const std::vector<Eigen::Vector2d>& waves) {
+  LineValues sum;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double angle = 2.0 * std::numbers::pi * lines[i].frequency_Hz * t_s;
+    const double value = waves[i].dot(Eigen::Vector2d(std::sin(angle), std::cos(angle)));
+    switch (lines[i].site) {
+      case LineSite::force:
+        sum.force += value;
+        break;
+      case LineSite::supply:
+        sum.supply_Pa += value;
+        break;
+      case LineSite::sensor:
+        sum.reading_m += value;
+        break;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
+                                  const std::vector<FreeParameter>& parameters,
+                                  const Eigen::VectorXd& theta,
+                                  const std::vector<SpectralLine>& lines,
+                                  const std::vector<Eigen::Vector2d>& waves) {
+  const std::unique_ptr<Ensemble> ensemble =
+      plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto index = ensemble->find(parameters[i].name);
+    if (!index) continue;  // a number of a change: its parameter keeps the value of the start
+    const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(*index, lane, value);
+  }
+  const auto load = ensemble->find("load_force.force_N");
+  const auto supply = ensemble->find("supply_pressure_Pa");
+  const double load_N = load ? ensemble->get(*load, kPlain) : 0.0;
+  const double supply_Pa = supply ? ensemble->get(*supply, kPlain) : 0.0;
+  Eigen::VectorXd moved_m(static_cast<Eigen::Index>(record.size()));
+  std::size_t segment = 0;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    if (segment < record.starts.size() && record.starts[segment] == k) {
+      ensemble->start(record.y_m[k]);
+      ++segment;
+    }
+    const LineValues line = values_at(record.t_s[k], lines, waves);
+    const Ensemble::Values reading_m = ensemble->reading_m();
+    moved_m[static_cast<Eigen::Index>(k)] = reading_m[kMoved] - reading_m[kPlain] + line.reading_m;
+    Ensemble::Values shift_m;
+    shift_m.fill(record.observer_gain(k, kObserver_per_s) * (record.y_m[k] - reading_m[kPlain]));
+    if (!load) shift_m[kMoved] += line.force * record.sample_time_s;
+    ensemble->shift(shift_m);
+    if (load) ensemble->set(*load, kMoved, load_N + line.force);
+    if (supply) ensemble->set(*supply, kMoved, supply_Pa + line.supply_Pa);
+    Ensemble::Values u_V;
+    u_V.fill(record.u_V[k]);
+    ensemble->advance(u_V, record.sample_time_s);
+  }
+  return moved_m;
+}
+
+}  // namespace estimator::greybox::disturbance

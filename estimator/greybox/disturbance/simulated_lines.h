@@ -1,0 +1,25 @@
+// What known spectral lines move a plant by, simulated: flow that saturates, friction and play let
+// less of a line through than the model linearised about its trajectory does.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/greybox/dataset.h"
+#include "estimator/greybox/disturbance/spectral_lines.h"
+#include "estimator/greybox/free_parameter.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::disturbance {
+
+/// Reading (samples, m) with the lines less that without them, of two simulations with `theta` that
+/// a weak observer corrects alike. `waves`: amplitudes of sine and cosine in the units of the
+/// sites. Throws as ObserverSimulation does.
+[[nodiscard]] Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model,
+                                                const Dataset& record,
+                                                const std::vector<FreeParameter>& parameters,
+                                                const Eigen::VectorXd& theta,
+                                                const std::vector<SpectralLine>& lines,
+                                                const std::vector<Eigen::Vector2d>& waves);
+
+}  // namespace estimator::greybox::disturbance
