@@ -55,7 +55,7 @@ struct Friction {
       v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is rigid", 0.0,
                       1e9, 1e7, 0.0, 0.0, 2},
         presliding_stiffness_N_per_m);
-      v(ParameterInfo{"presliding_damping_N_s_per_m", "damping before it slides", 0.0, 1e5, 500.0,
+      v(ParameterInfo{"presliding_damping_N_s_per_m", "damping before it slides", 0.0, 1e5, 5000.0,
                       0.0, 0.0, 2},
         presliding_damping_N_s_per_m);
       v(ParameterInfo{"direction_ratio", "more when extending, less when retracting", -1.0, 1.0,

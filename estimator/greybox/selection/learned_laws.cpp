@@ -69,6 +69,15 @@ std::string shared_site(const std::vector<std::string>& effects) {
   return site;
 }
 
+/// True where a parameter of the plant has come to the end of its range.
+bool strains_the_plant(const FitSummary& fitted) {
+  for (std::size_t i = 0; i < fitted.at_bound.size(); ++i) {
+    if (fitted.at_bound[i] != 0 && fitted.parameters[i].name.find('.') == std::string::npos)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
@@ -85,8 +94,9 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
                 const InnovationSearch& innovations, Diagnosis& result) {
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
-  // several effects that leave what follows the motion may stand in for one law, at any site
-  const bool everywhere = added.size() > 1 && innovations.physics_missing();
+  // several effects may stand in for one law, at any site
+  const bool everywhere =
+      added.size() > 1 && (innovations.physics_missing() || strains_the_plant(named.model.fitted));
   const std::string site = everywhere ? "" : shared_site(added);
   if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked

@@ -17,8 +17,12 @@ struct UnitScale {
   std::string_view suffix;
   double (*of)(const RigScale&);
 };
-// The longer before its ending.
+// The longer before its ending. A bristle yields over micrometres, however long the motion is:
+// k ~ F / z, s1 ~ sqrt(k m).
 constexpr std::array kUnits = {
+    UnitScale{"presliding_stiffness_N_per_m", [](const RigScale& s) { return s.force_N; }},
+    UnitScale{"presliding_damping_N_s_per_m",
+              [](const RigScale& s) { return s.force_N * std::sqrt(s.length_m) / s.speed_mps; }},
     UnitScale{"_N_s2_per_m2",
               [](const RigScale& s) { return s.force_N / (s.speed_mps * s.speed_mps); }},
     UnitScale{"_N_s_per_m", [](const RigScale& s) { return s.force_N / s.speed_mps; }},
@@ -39,7 +43,7 @@ constexpr std::array kUnits = {
 
 double scale_of(std::string_view name, const RigScale& scale) {
   for (const UnitScale& unit : kUnits) {
-    if (name.size() > unit.suffix.size() &&
+    if (name.size() >= unit.suffix.size() &&
         name.substr(name.size() - unit.suffix.size()) == unit.suffix) {
       return unit.of(scale);
     }
