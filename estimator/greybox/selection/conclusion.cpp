@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/final_parameters.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -186,10 +188,28 @@ void locate_load(const InnovationSearch& innovations, std::vector<Localisation>&
   for (Localisation& one : where) one.site = site;
 }
 
+/// The search without an effect that the final fit has brought to nothing, where there is one.
+std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
+                                                    const InnovationSearch& innovations,
+                                                    const FitSummary& final) {
+  const std::vector<std::string>& added = innovations.final.model.added;
+  for (std::size_t i = 0; i < innovations.without.size(); ++i) {
+    if (!is_idle(final, added[i])) continue;
+    InnovationSearch rest = innovations;
+    rest.final = innovations.without[i];
+    rest.without.clear();
+    rest.rivals.clear();
+    weigh_remainder(search, rest);
+    return rest;
+  }
+  return {};
+}
+
 }  // namespace
 
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
               const InnovationSearch& innovations, Diagnosis& result) {
+  const Diagnosis before = result;
   result.by_innovations = true;
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   const double nominal_m = result.search.nominal_rms_m;
@@ -233,6 +253,11 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
           least_rms_m(search, innovations.without[i].model.fitted, kObserver_per_s);
     }
     fit_final_parameters(search, result);
+    if (const auto rest = without_idle_effect(search, innovations, result.final)) {
+      result = before;
+      conclude(context, search, first, *rest, result);
+      return;
+    }
   } else {
     take_parameters(innovations.final, result);
   }

@@ -97,6 +97,16 @@ void revive(const SearchContext& context, FitSummary& fitted) {
   }
 }
 
+bool is_idle(const FitSummary& fitted, const std::string& effect) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    if (belongs_to(fitted.parameters[i], effect)) {
+      return fitted.parameters[i].scale == ParameterScale::linear &&
+             fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
+    }
+  }
+  return false;
+}
+
 void drop_idle_refinements(FitSummary& fitted) {
   using Eigen::Index;
   const auto count = static_cast<Index>(fitted.parameters.size());

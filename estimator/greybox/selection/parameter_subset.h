@@ -58,6 +58,8 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 /// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
+/// True when the effect's size, its first parameter, is zero.
+[[nodiscard]] bool is_idle(const FitSummary& fitted, const std::string& effect);
 /// Removes refinements of effects that change nothing: at their neutral value, or without
 /// influence.
 void drop_idle_refinements(FitSummary& fitted);

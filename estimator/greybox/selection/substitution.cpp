@@ -8,17 +8,6 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// True when the effect's size, its first parameter, is zero.
-bool is_idle(const FitSummary& fitted, const std::string& effect) {
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    if (belongs_to(fitted.parameters[i], effect)) {
-      return fitted.parameters[i].scale == ParameterScale::linear &&
-             fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
-    }
-  }
-  return false;
-}
-
 ModelStage without(const SearchContext& context, const ModelStage& stage,
                    const std::string& effect) {
   ModelStage rest = stage;
