@@ -197,12 +197,58 @@ InnovationData innovation_data(const plant_sim::ModelFile& model, const FitDatas
   return result;
 }
 
+namespace {
+
+/// What is left of the lines in a record's innovations, and how it depends on their frequencies:
+/// normal equations of the steps in frequency, the waves free.
+struct FrequencyEquations {
+  MatrixXd normal;
+  VectorXd slope;
+};
+
+void add_record(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
+                std::size_t r, const NoiseModel& noise, const VectorXd& innovations,
+                FrequencyEquations& equations) {
+  const double middle_s = 0.5 * (record.t_s.front() + record.t_s.back());
+  const MatrixXd waves = basis_of(line_responses(model, record, gains, noise.lines));
+  const auto apart = [&](const VectorXd& x) -> VectorXd {
+    return x - waves * (waves.transpose() * x);
+  };
+  MatrixXd slopes(innovations.size(), static_cast<Index>(noise.lines.size()));
+  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
+    slopes.col(static_cast<Index>(i)) = apart(
+        frequency_response(model, record, gains, noise.lines[i], noise.waves[i][r], middle_s));
+  }
+  equations.normal += slopes.transpose() * slopes;
+  equations.slope += slopes.transpose() * apart(innovations);
+}
+
+/// Moves the lines' frequencies by a Gauss-Newton step, less than a quarter of a bin.
+void tune_frequencies(const FitDataset& data, const FrequencyEquations& equations,
+                      NoiseModel& noise) {
+  const double most_Hz = 0.25 / longest_s(data);
+  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    if (!(equations.normal(k, k) > 0.0)) continue;
+    const double by_Hz = std::clamp(equations.slope[k] / equations.normal(k, k), -most_Hz, most_Hz);
+    noise.lines[i].frequency_Hz += by_Hz;
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      const std::vector<double>& t_s = data.records[r].t_s;
+      noise.waves[i][r] = turned(noise.waves[i][r], by_Hz, 0.5 * (t_s.front() + t_s.back()));
+    }
+  }
+}
+
+}  // namespace
+
 void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
                   const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                   const Linearisations& models, NoiseModel& noise) {
   if (noise.lines.empty()) return;
   noise.waves.resize(noise.lines.size(),
                      std::vector<Eigen::Vector2d>(data.records.size(), Eigen::Vector2d::Zero()));
+  const auto count = static_cast<Index>(noise.lines.size());
+  FrequencyEquations equations{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     Dataset record = data.records[r];
     InnovationGains gains = *record.innovations;
@@ -214,7 +260,9 @@ void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
     const std::vector<Eigen::Vector2d> more =
         fit_waves(models[r], record, gains, noise.lines, innovations.col(0));
     for (std::size_t i = 0; i < more.size(); ++i) noise.waves[i][r] += more[i];
+    add_record(models[r], record, gains, r, noise, innovations.col(0), equations);
   }
+  tune_frequencies(data, equations, noise);
 }
 
 double minus_two_log_likelihood(const plant_sim::ModelFile& model, const FitDataset& data,

@@ -48,7 +48,7 @@ struct InnovationData {
                                              const Linearisations& models, const NoiseModel& noise);
 
 /// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must
-/// come from `noise`.
+/// come from `noise`, and tunes their frequencies.
 void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
                   const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
                   const Linearisations& models, NoiseModel& noise);

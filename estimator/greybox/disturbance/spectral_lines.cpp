@@ -1,5 +1,6 @@
 #include "estimator/greybox/disturbance/spectral_lines.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -114,29 +115,57 @@ const char* to_string(LineSite site) {
   return "sensor";
 }
 
-MatrixXd line_response(const Linearisation& model, const Dataset& record,
-                       const InnovationGains& gains, const SpectralLine& line) {
-  MatrixXd result(static_cast<Index>(record.size()), 2);
-  using Pair = Eigen::Matrix<double, kMostStates, 2>;
-  Pair z = Pair::Zero();
+namespace {
+
+/// Scaled innovations (samples x Count) that inputs w(t) at a site cause; zero for samples that are
+/// not valid. `inputs(t)`: Count values.
+template <int Count, typename Inputs>
+MatrixXd response(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
+                  LineSite site, Inputs inputs) {
+  MatrixXd result(static_cast<Index>(record.size()), Count);
+  Eigen::Matrix<double, kMostStates, Count> z = Eigen::Matrix<double, kMostStates, Count>::Zero();
   std::size_t segment = 0;
   for (std::size_t row = 0; row < record.size(); ++row) {
     if (segment < record.starts.size() && record.starts[segment] == row) {
       z.setZero();
       ++segment;
     }
-    const double angle = 2.0 * std::numbers::pi * line.frequency_Hz * record.t_s[row];
-    const Eigen::RowVector2d w(std::sin(angle), std::cos(angle));
-    Eigen::RowVector2d e = z.row(0);
-    if (line.site == LineSite::sensor) e += w;
+    const Eigen::Matrix<double, 1, Count> w = inputs(record.t_s[row]);
+    Eigen::Matrix<double, 1, Count> e = z.row(0);
+    if (site == LineSite::sensor) e += w;
     const auto k = static_cast<Index>(row);
     const double counts = record.valid[row] != 0 ? 1.0 : 0.0;
     result.row(k) = counts * gains.scale[k] * e;
     z -= gain_at(gains, k) * e;
     z = (transition_at(model, gains, row) * z).eval();
-    if (line.site != LineSite::sensor) z += input_of(model, line.site, row) * w;
+    if (site != LineSite::sensor) z += input_of(model, site, row) * w;
   }
   return result;
+}
+
+}  // namespace
+
+MatrixXd line_response(const Linearisation& model, const Dataset& record,
+                       const InnovationGains& gains, const SpectralLine& line) {
+  return response<2>(model, record, gains, line.site, [&](double t_s) {
+    const double angle = 2.0 * std::numbers::pi * line.frequency_Hz * t_s;
+    return Eigen::RowVector2d(std::sin(angle), std::cos(angle));
+  });
+}
+
+VectorXd frequency_response(const Linearisation& model, const Dataset& record,
+                            const InnovationGains& gains, const SpectralLine& line,
+                            const Eigen::Vector2d& wave, double at_s) {
+  return response<1>(model, record, gains, line.site, [&](double t_s) {
+    const double angle = 2.0 * std::numbers::pi * line.frequency_Hz * t_s;
+    const double slope = wave[0] * std::cos(angle) - wave[1] * std::sin(angle);
+    return Eigen::Matrix<double, 1, 1>(2.0 * std::numbers::pi * (t_s - at_s) * slope);
+  });
+}
+
+Eigen::Vector2d turned(const Eigen::Vector2d& wave, double by_Hz, double at_s) {
+  const double angle = -2.0 * std::numbers::pi * by_Hz * at_s;
+  return Eigen::Rotation2Dd(angle) * wave;
 }
 
 std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model, const Dataset& record,

@@ -10,6 +10,7 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/dated_changes.h"
+#include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
@@ -48,6 +49,12 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
   innovations = std::move(plain);
 }
 
+/// RMS of what sensor and disturbance cause in a simulation.
+double disturbed_floor_m(const SearchContext& search, const InnovationSearch& innovations) {
+  const auto disturbance = disturbance_of(search, innovations);
+  return std::hypot(search.problem.data.noise_floor_m, disturbance ? disturbance->rms_m : 0.0);
+}
+
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
@@ -67,9 +74,11 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, first, innovations, result);
   };
   const FitSummary held = simulated(search, innovations.final.model.fitted);
-  // what the likelihood prefers is no better model where its simulation is the worse one
-  const bool worse =
-      !(held.validation_rms_m <= (1.0 + kClearlyWorse) * first.fitted.validation_rms_m);
+  // what the likelihood prefers is no better model where its simulation is the worse one, unless
+  // the disturbance is as large: a fit of simulations follows that
+  const double expected_m =
+      std::max(first.fitted.validation_rms_m, disturbed_floor_m(search, innovations));
+  const bool worse = !(held.validation_rms_m <= (1.0 + kClearlyWorse) * expected_m);
   if (context.cancelled() ||
       (!worse && (!innovations.physics_missing() || innovations.load_sets_in()))) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
