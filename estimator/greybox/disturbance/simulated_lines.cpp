@@ -44,13 +44,14 @@ LineValues values_at(double t_s, const std::vector<SpectralLine>& lines,
   return sum;
 }
 
-}  // namespace
+/// What the observer holds the lane without lines to.
+enum class HeldTo { measured, reading_with_lines };
 
-Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
-                                  const std::vector<FreeParameter>& parameters,
-                                  const Eigen::VectorXd& theta,
-                                  const std::vector<SpectralLine>& lines,
-                                  const std::vector<Eigen::Vector2d>& waves) {
+Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
+                                 const std::vector<FreeParameter>& parameters,
+                                 const Eigen::VectorXd& theta,
+                                 const std::vector<SpectralLine>& lines,
+                                 const std::vector<Eigen::Vector2d>& waves, HeldTo held_to) {
   const std::unique_ptr<Ensemble> ensemble =
       plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -72,9 +73,16 @@ Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Datas
     }
     const LineValues line = values_at(record.t_s[k], lines, waves);
     const Ensemble::Values reading_m = ensemble->reading_m();
-    moved_m[static_cast<Eigen::Index>(k)] = reading_m[kMoved] - reading_m[kPlain] + line.reading_m;
+    const double now_m = reading_m[kMoved] - reading_m[kPlain] + line.reading_m;
+    moved_m[static_cast<Eigen::Index>(k)] = now_m;
+    const double gain = record.observer_gain(k, kObserver_per_s);
     Ensemble::Values shift_m;
-    shift_m.fill(record.observer_gain(k, kObserver_per_s) * (record.y_m[k] - reading_m[kPlain]));
+    if (held_to == HeldTo::measured) {
+      shift_m.fill(gain * (record.y_m[k] - reading_m[kPlain]));
+    } else {
+      shift_m.fill(gain * (record.y_m[k] - reading_m[kMoved] - line.reading_m));
+      shift_m[kPlain] += gain * now_m;
+    }
     if (!load) shift_m[kMoved] += line.force * record.sample_time_s;
     ensemble->shift(shift_m);
     if (load) ensemble->set(*load, kMoved, load_N + line.force);
@@ -84,6 +92,25 @@ Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Datas
     ensemble->advance(u_V, record.sample_time_s);
   }
   return moved_m;
+}
+
+}  // namespace
+
+Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
+                                  const std::vector<FreeParameter>& parameters,
+                                  const Eigen::VectorXd& theta,
+                                  const std::vector<SpectralLine>& lines,
+                                  const std::vector<Eigen::Vector2d>& waves) {
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves, HeldTo::measured);
+}
+
+Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model, const Dataset& record,
+                                       const std::vector<FreeParameter>& parameters,
+                                       const Eigen::VectorXd& theta,
+                                       const std::vector<SpectralLine>& lines,
+                                       const std::vector<Eigen::Vector2d>& waves) {
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves,
+                          HeldTo::reading_with_lines);
 }
 
 }  // namespace estimator::greybox::disturbance

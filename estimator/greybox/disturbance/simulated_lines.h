@@ -22,4 +22,13 @@ namespace estimator::greybox::disturbance {
                                                 const std::vector<SpectralLine>& lines,
                                                 const std::vector<Eigen::Vector2d>& waves);
 
+/// Error (samples, m) that the lines leave in a simulation without them which a weak observer keeps
+/// at the reading; arguments as above.
+[[nodiscard]] Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model,
+                                                     const Dataset& record,
+                                                     const std::vector<FreeParameter>& parameters,
+                                                     const Eigen::VectorXd& theta,
+                                                     const std::vector<SpectralLine>& lines,
+                                                     const std::vector<Eigen::Vector2d>& waves);
+
 }  // namespace estimator::greybox::disturbance

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/disturbance/simulated_lines.h"
 #include "estimator/residual/distributions.h"
 
 namespace estimator::greybox::selection {
@@ -19,6 +20,7 @@ struct RecordDisturbance {
   double random_m2 = 0.0;
   double walk_m2 = 0.0;  ///< what the walk of the position alone would cause
   std::vector<disturbance::LineAmplitude> lines;
+  double lines_m2 = 0.0;  ///< all of them together; friction makes more of them than their sum
 };
 
 RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
@@ -32,10 +34,24 @@ RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   disturbance::NoiseParameters walk = stage.noise.noise;
   walk.disturbance_sd = 0.0;
   result.walk_m2 = caused_m2(walk);
+  std::vector<Eigen::Vector2d> waves;
   for (std::size_t i = 0; i < stage.noise.waves.size(); ++i) {
+    waves.push_back(stage.noise.waves[i][r]);
     result.lines.push_back(disturbance::line_amplitude(
         stage.linear[r], record, stage.noise.lines[i], stage.noise.waves[i][r]));
   }
+  if (waves.empty()) return result;
+  const FitSummary& fitted = stage.model.fitted;
+  const Eigen::VectorXd error_m =
+      disturbance::simulated_line_error_m(stage.context.problem.model, record, fitted.parameters,
+                                          fitted.theta, stage.noise.lines, waves);
+  double samples = 0.0;
+  for (Index k = 0; k < error_m.size(); ++k) {
+    if (record.valid[static_cast<std::size_t>(k)] == 0) continue;
+    result.lines_m2 += error_m[k] * error_m[k];
+    samples += 1.0;
+  }
+  result.lines_m2 /= std::max(samples, 1.0);
   return result;
 }
 
@@ -78,12 +94,11 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
     counted += samples;
     random_m2 += samples * one.random_m2;
     walk_m2 += samples * one.walk_m2;
-    total_m2 += samples * one.random_m2;
+    total_m2 += samples * (one.random_m2 + one.lines_m2);
     result.lines.resize(one.lines.size());
     for (std::size_t i = 0; i < one.lines.size(); ++i) {
       result.lines[i].amplitude += samples * std::pow(one.lines[i].amplitude, 2);
       result.lines[i].rms_m += samples * std::pow(one.lines[i].rms_m, 2);
-      total_m2 += samples * std::pow(one.lines[i].rms_m, 2);
     }
   }
   for (std::size_t i = 0; i < result.lines.size(); ++i) {

@@ -68,6 +68,20 @@ TEST(SimulatedLines, AForceBelowFrictionMovesNothingAtRest) {
   EXPECT_GT(moved_by(80.0), 1e-6);
 }
 
+// Of a shaking sensor the observer follows what is slower than it is.
+TEST(SimulatedLines, TheErrorOfAFastLineIsTheLineItself) {
+  const Dataset record = axis_record(2000);
+  const std::vector<SpectralLine> lines = {{LineSite::sensor, kFrequency_Hz}};
+  const std::vector<Vector2d> waves = {Vector2d(2e-5, 0.0)};
+  const VectorXd error_m = simulated_line_error_m(axis(), record, {}, VectorXd(), lines, waves);
+  const VectorXd line_m = simulated_lines_m(axis(), record, {}, VectorXd(), lines, waves);
+  EXPECT_LT(rms((error_m - line_m).tail(1000)), 0.05 * rms(line_m));
+  const std::vector<SpectralLine> slow = {{LineSite::sensor, 0.02}};
+  const VectorXd followed_m = simulated_line_error_m(axis(), record, {}, VectorXd(), slow, waves);
+  EXPECT_LT(rms(followed_m.tail(1000)),
+            0.3 * rms(simulated_lines_m(axis(), record, {}, VectorXd(), slow, waves).tail(1000)));
+}
+
 // A valve that lets its largest flow through does so at any pressure.
 TEST(SimulatedLines, AFlowThatIsLimitedPassesNoPulsation) {
   const auto moved_by = [](double limit_m3ps) {
