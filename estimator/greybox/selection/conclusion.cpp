@@ -165,6 +165,21 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
   }
 }
 
+bool noise_is_credible(const SearchContext& search, const InnovationSearch& innovations,
+                       const std::optional<Disturbance>& disturbance, double rms_m) {
+  const double sensor_m = search.problem.data.noise_floor_m;
+  const double floor_m = std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0);
+  const bool incredible = floor_m > kIncredible * rms_m &&
+                          innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
+  const bool beyond = rms_m > kBeyondDisturbance * floor_m;
+  const bool white =
+      disturbance &&
+      disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
+      floor_m > kGreatWhite * sensor_m;
+  const bool lost = rms_m > kLost * motion_rms_m(search.problem.data);
+  return !(incredible || beyond || white || lost);
+}
+
 namespace {
 
 ParameterChange load_step(const InnovationSearch& innovations) {
@@ -230,17 +245,10 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
-  const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
-                          innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
-  // what the noise model explains of the samples has to explain the simulation too
-  const bool beyond =
-      !context.cancelled() && result.rms_after_m > kBeyondDisturbance * result.disturbed_floor_m();
-  const bool white =
-      result.disturbance &&
-      result.disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
-      result.disturbed_floor_m() > kGreatWhite * result.noise_floor_m;
-  const bool lost = result.rms_after_m > kLost * motion_rms_m(search.problem.data);
-  const bool physics = innovations.physics_missing() || incredible || beyond || white || lost;
+  const bool physics =
+      innovations.physics_missing() ||
+      (!context.cancelled() &&
+       !noise_is_credible(search, innovations, result.disturbance, result.rms_after_m));
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;

@@ -13,6 +13,12 @@ namespace estimator::greybox::selection {
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);
 
+/// True where what sensor and disturbance would cause in a simulation, by the noise model, agrees
+/// with its error `rms_m`: what explains the samples has to explain the simulation too.
+[[nodiscard]] bool noise_is_credible(const SearchContext& search,
+                                     const InnovationSearch& innovations,
+                                     const std::optional<Disturbance>& disturbance, double rms_m);
+
 /// A verdict by the likelihood of innovations. `first`: the model as given, its parameters fitted.
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
               const InnovationSearch& innovations, Diagnosis& result);

@@ -49,12 +49,6 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
   innovations = std::move(plain);
 }
 
-/// RMS of what sensor and disturbance cause in a simulation.
-double disturbed_floor_m(const SearchContext& search, const InnovationSearch& innovations) {
-  const auto disturbance = disturbance_of(search, innovations);
-  return std::hypot(search.problem.data.noise_floor_m, disturbance ? disturbance->rms_m : 0.0);
-}
-
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
@@ -76,11 +70,16 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const FitSummary held = simulated(search, innovations.final.model.fitted);
   // what the likelihood prefers is no better model where its simulation is the worse one, unless
   // the disturbance is as large: a fit of simulations follows that
-  const double expected_m =
-      std::max(first.fitted.validation_rms_m, disturbed_floor_m(search, innovations));
+  const std::optional<Disturbance> disturbance = disturbance_of(search, innovations);
+  const double expected_m = std::max(
+      first.fitted.validation_rms_m,
+      std::hypot(search.problem.data.noise_floor_m, disturbance ? disturbance->rms_m : 0.0));
   const bool worse = !(held.validation_rms_m <= (1.0 + kClearlyWorse) * expected_m);
-  if (context.cancelled() ||
-      (!worse && (!innovations.physics_missing() || innovations.load_sets_in()))) {
+  const bool understood =
+      innovations.load_sets_in() ||
+      (!innovations.physics_missing() &&
+       noise_is_credible(search, innovations, disturbance, held.validation_rms_m));
+  if (context.cancelled() || (!worse && understood)) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;
   }

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMostEffects = 4;
 constexpr std::size_t kMostLines = 4;
+constexpr int kMostExchanges = 2;
 /// Candidates of a round that get a noise model of their own.
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kMostLineFinalists = 2;
@@ -224,7 +225,6 @@ InnovationStage without_effect(const SearchContext& context, const InnovationSea
 /// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
 /// and other effects were not known may have stood for these and another effect together.
 bool exchange(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
-  search.rivals.clear();
   if (stage.model.added.size() + stage.noise.lines.size() < 2) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
@@ -246,6 +246,7 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
     candidate.fitted.jacobian.resize(0, 0);
     without.model.fitted.jacobian.resize(0, 0);
     search.rounds.push_back({std::move(without.model), {std::move(candidate)}});
+    search.rivals.clear();
     return true;
   }
   return false;
@@ -320,11 +321,11 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   };
   extend_fully();
   take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
-  for (bool exchanged = true; exchanged && !context.cancelled();) {
+  for (int exchanges = 0; !context.cancelled(); ++exchanges) {
     search.inexact_nats = inexact_nats();
     search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
-    exchanged = exchange(context, search, stage);
-    if (exchanged) extend_fully();
+    if (exchanges == kMostExchanges || !exchange(context, search, stage)) break;
+    extend_fully();
   }
   note_gains(search, stage);
   search.final = std::move(stage);

@@ -48,7 +48,7 @@ TEST(InnovationSearch, ALinesFrequencyIsFoundToASmallPartOfABin) {
       searched("motion=multisine,length_s=20,outside.shake_m=4e-5,outside.shake_Hz=41.3217", 77);
   EXPECT_THAT(found.final.model.added, IsEmpty());
   ASSERT_THAT(found.final.noise.lines, SizeIs(1));
-  EXPECT_NEAR(found.final.noise.lines.front().frequency_Hz, kFrequency_Hz, 5e-4);
+  EXPECT_NEAR(found.final.noise.lines.front().frequency_Hz, kFrequency_Hz, 1.5e-4);
 }
 
 }  // namespace
