@@ -10,6 +10,7 @@
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -26,6 +27,8 @@ constexpr double kBeyondDisturbance = 2.0;
 /// lacks from sample to sample.
 constexpr double kWhite = 0.95;
 constexpr double kGreatWhite = 10.0;
+/// Share of the drive's force from which on a random force is what the model does not know.
+constexpr double kOfDrive = 0.33;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow.
 constexpr double kLost = 0.5;
 /// Share of the squared error that a place has to explain to be named.
@@ -177,7 +180,10 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
       disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
       floor_m > kGreatWhite * sensor_m;
   const bool lost = rms_m > kLost * motion_rms_m(search.problem.data);
-  return !(incredible || beyond || white || lost);
+  const double drive_N = rig_scale(search.problem.model, search.problem.data).drive_N;
+  const bool great = disturbance && disturbance->as == "force" && drive_N > 0.0 &&
+                     disturbance->value > kOfDrive * drive_N;
+  return !(incredible || beyond || white || lost || great);
 }
 
 namespace {
@@ -203,13 +209,20 @@ void locate_load(const InnovationSearch& innovations, std::vector<Localisation>&
   for (Localisation& one : where) one.site = site;
 }
 
+/// True for an effect of size zero that has no refinement to act by.
+bool is_nothing(const FitSummary& fitted, const std::string& effect) {
+  return is_idle(fitted, effect) &&
+         std::none_of(fitted.parameters.begin(), fitted.parameters.end(),
+                      [&](const auto& p) { return belongs_to(p, effect) && p.refinement > 0; });
+}
+
 /// The search without an effect that the final fit has brought to nothing, where there is one.
 std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
                                                     const InnovationSearch& innovations,
                                                     const FitSummary& final) {
   const std::vector<std::string>& added = innovations.final.model.added;
   for (std::size_t i = 0; i < innovations.without.size(); ++i) {
-    if (!is_idle(final, added[i])) continue;
+    if (!is_nothing(final, added[i])) continue;
     InnovationSearch rest = innovations;
     rest.final = innovations.without[i];
     rest.without.clear();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "config/units/quantity.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "plant_sim/library.h"
 
@@ -101,15 +102,23 @@ bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect)
   return 1.0 - curve.explained_ratio < left_ratio;
 }
 
-/// Doubt by the effect's size, its first parameter.
+bool is_clear_of_error(const ParameterValue& p) {
+  return !p.at_bound && std::abs(p.value) > kStandardErrors * p.std_error;
+}
+
+/// Doubt by the effect's size, its first parameter. Where that is zero, a refinement in its unit
+/// may be all there is: friction that falls to nothing while it slides.
 std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
-  const auto size =
-      std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(),
-                   [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; });
-  if (size == diagnosis.parameters.end()) return {};
-  if (size->at_bound) return Doubt::at_bound;
-  if (!(std::abs(size->value) > kStandardErrors * size->std_error)) return Doubt::within_error;
-  return {};
+  const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
+  const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
+  if (size == diagnosis.parameters.end() || is_clear_of_error(*size)) return {};
+  const std::string unit = config::units::unit_of(size->name);
+  const bool refined =
+      size->value == 0.0 && std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
+        return is_own(p) && config::units::unit_of(p.name) == unit && is_clear_of_error(p);
+      });
+  if (refined) return {};
+  return size->at_bound ? Doubt::at_bound : Doubt::within_error;
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.

@@ -44,6 +44,7 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
     scale.force_N = oil->area_m2 * oil->supply_pressure_Pa;
   } else if (const double* const gain = model.value("gain_N_per_V")) {
     scale.force_N = *gain * most_V;
+    scale.drive_N = *gain * scale.command_V;
   }
   return scale;
 }

@@ -14,6 +14,7 @@ struct RigScale {
   double command_V = 0.7;
   double most_command_V = 4.0;
   double force_N = 4400.0;  ///< greatest
+  double drive_N = 0.0;     ///< RMS of the command's force; 0 where it commands none
   double pressure_Pa = 6.9e6;
   double area_m2 = 6.3e-4;
 };

@@ -90,6 +90,10 @@ std::vector<ModelStage> cross_validated_path(const SearchContext& context, Cross
         taken(kept.back(), effect,
               refit(context, taking(kept.back(), path.back(), effect),
                     context.problem.data.training_mask, wide(context.options.threads)));
+    // a fit from the stage before may end elsewhere than the path's own
+    if (kept.size() == i && path[i].fitted.training_rms_m < more.fitted.training_rms_m) {
+      more = path[i];
+    }
     const bool plain_to_see =
         more.fitted.validation_rms_m < kPlainToSee * kept.back().fitted.validation_rms_m;
     if (plain_to_see || halves.holds(false, all(kept.back()), all(more))) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "estimator/greybox/selection/diagnosis.h"
 
 namespace estimator::greybox::selection {
@@ -37,6 +39,15 @@ TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {
   Diagnosis d = unexplained();
   d.parameters[1].at_bound = true;
   EXPECT_THAT(named(d), ElementsAre("friction at_bound", "backlash within_error"));
+}
+
+// Coulomb's level zero, the static one clear of its error: friction that fades with the speed.
+TEST(Confidence, AnEffectWhoseRefinementIsClearIsEstablishedWithoutItsFirstSize) {
+  Diagnosis d = unexplained();
+  d.parameters[1] = {"friction.coulomb_N", 0.0, std::nan(""), true};
+  EXPECT_THAT(named(d), ElementsAre("friction at_bound", "backlash within_error"));
+  d.parameters[2] = {"friction.static_N", 11.4, 1.8, false};
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
 }
 
 TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
