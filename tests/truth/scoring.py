@@ -96,6 +96,10 @@ def score_rod(record, verdict, named, groups):
     return "group" if held and inside and len(claimed) <= len(truth) else "no"
 
 
+# A law that the library has by another name: its equations are the same.
+LIBRARY_NAMES = {"elastic_shaft": "second_mass"}
+
+
 def score_law(record, verdict, answer, named):
     """The verdict on a law that the library does not have, or has by another equation under the
     same name, and where it was looked for."""
@@ -107,7 +111,8 @@ def score_law(record, verdict, answer, named):
     result["similar"] = result["variable"] or any(
         name in left_out["same_signal"] for name in variables)
     result["class"] = any(where.get("class") in left_out["classes"] for where in first)
-    result["named"] = verdict == "missing" and named == [left_out["name"]]
+    result["named"] = verdict == "missing" and named == [
+        LIBRARY_NAMES.get(left_out["name"], left_out["name"])]
     result["told"] = verdict in TOLD or result["named"]
     return result
 
