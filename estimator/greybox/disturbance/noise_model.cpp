@@ -26,6 +26,8 @@ constexpr double kMostWalk_ratio = 150.0;
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
+/// Largest step of a line's frequency, in bins of the longest record.
+constexpr double kMostStep_bins = 0.25;
 /// Fall of -2 log L below which a step of the search is its last.
 constexpr double kEnough = 0.1;
 
@@ -199,44 +201,23 @@ InnovationData innovation_data(const plant_sim::ModelFile& model, const FitDatas
 
 namespace {
 
-/// What is left of the lines in a record's innovations, and how it depends on their frequencies:
-/// normal equations of the steps in frequency, the waves free.
-struct FrequencyEquations {
-  MatrixXd normal;
-  VectorXd slope;
-};
+double middle_s(const Dataset& record) { return 0.5 * (record.t_s.front() + record.t_s.back()); }
 
-void add_record(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
-                std::size_t r, const NoiseModel& noise, const VectorXd& innovations,
-                FrequencyEquations& equations) {
-  const double middle_s = 0.5 * (record.t_s.front() + record.t_s.back());
-  const MatrixXd waves = basis_of(line_responses(model, record, gains, noise.lines));
-  const auto apart = [&](const VectorXd& x) -> VectorXd {
-    return x - waves * (waves.transpose() * x);
-  };
-  MatrixXd slopes(innovations.size(), static_cast<Index>(noise.lines.size()));
-  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
-    slopes.col(static_cast<Index>(i)) = apart(
-        frequency_response(model, record, gains, noise.lines[i], noise.waves[i][r], middle_s));
-  }
-  equations.normal += slopes.transpose() * slopes;
-  equations.slope += slopes.transpose() * apart(innovations);
+/// The record's innovations from which no line was projected out.
+VectorXd plain_innovations(const plant_sim::ModelFile& model, Dataset record,
+                           const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                           const InnovationGains& gains) {
+  record.innovations = std::make_shared<const InnovationGains>(gains);
+  ObserverSimulation run(model, record, parameters);
+  MatrixXd innovations;
+  run.residuals(theta, innovations);
+  return innovations.col(0);
 }
 
-/// Moves the lines' frequencies by a Gauss-Newton step, less than a quarter of a bin.
-void tune_frequencies(const FitDataset& data, const FrequencyEquations& equations,
-                      NoiseModel& noise) {
-  const double most_Hz = 0.25 / longest_s(data);
-  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
-    const auto k = static_cast<Index>(i);
-    if (!(equations.normal(k, k) > 0.0)) continue;
-    const double by_Hz = std::clamp(equations.slope[k] / equations.normal(k, k), -most_Hz, most_Hz);
-    noise.lines[i].frequency_Hz += by_Hz;
-    for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const std::vector<double>& t_s = data.records[r].t_s;
-      noise.waves[i][r] = turned(noise.waves[i][r], by_Hz, 0.5 * (t_s.front() + t_s.back()));
-    }
-  }
+InnovationGains without_lines(const Dataset& record) {
+  InnovationGains gains = *record.innovations;
+  gains.lines.resize(0, 0);
+  return gains;
 }
 
 }  // namespace
@@ -247,22 +228,57 @@ void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
   if (noise.lines.empty()) return;
   noise.waves.resize(noise.lines.size(),
                      std::vector<Eigen::Vector2d>(data.records.size(), Eigen::Vector2d::Zero()));
-  const auto count = static_cast<Index>(noise.lines.size());
-  FrequencyEquations equations{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
   for (std::size_t r = 0; r < data.records.size(); ++r) {
-    Dataset record = data.records[r];
-    InnovationGains gains = *record.innovations;
-    gains.lines.resize(0, 0);
-    record.innovations = std::make_shared<const InnovationGains>(gains);
-    ObserverSimulation run(model, record, parameters);
-    MatrixXd innovations;
-    run.residuals(theta, innovations);
+    const Dataset& record = data.records[r];
+    const InnovationGains gains = without_lines(record);
     const std::vector<Eigen::Vector2d> more =
-        fit_waves(models[r], record, gains, noise.lines, innovations.col(0));
+        fit_waves(models[r], record, gains, noise.lines,
+                  plain_innovations(model, record, parameters, theta, gains));
     for (std::size_t i = 0; i < more.size(); ++i) noise.waves[i][r] += more[i];
-    add_record(models[r], record, gains, r, noise, innovations.col(0), equations);
   }
-  tune_frequencies(data, equations, noise);
+}
+
+void tune_frequencies(const plant_sim::ModelFile& model, const FitDataset& data,
+                      const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                      const Linearisations& models, NoiseModel& noise) {
+  const auto count = static_cast<Index>(noise.waves.size());
+  if (count == 0) return;
+  // normal equations of the steps, the waves free
+  MatrixXd normal = MatrixXd::Zero(count, count);
+  VectorXd slope = VectorXd::Zero(count);
+  double longest_s = 0.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const Dataset& record = data.records[r];
+    longest_s = std::max(longest_s, record.t_s.back() - record.t_s.front());
+    const InnovationGains gains = without_lines(record);
+    const MatrixXd waves = basis_of(line_responses(models[r], record, gains, noise.lines));
+    const auto apart = [&](const VectorXd& x) -> VectorXd {
+      return x - waves * (waves.transpose() * x);
+    };
+    MatrixXd slopes(static_cast<Index>(record.size()), count);
+    for (Index i = 0; i < count; ++i) {
+      const auto line = static_cast<std::size_t>(i);
+      slopes.col(i) = apart(frequency_sensitivity(models[r], record, gains, noise.lines[line],
+                                                  noise.waves[line][r], middle_s(record)));
+    }
+    normal += slopes.transpose() * slopes;
+    slope += slopes.transpose() * apart(plain_innovations(model, record, parameters, theta, gains));
+  }
+  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+  const VectorXd steps_Hz =
+      linear_algebra::shortest_least_squares(scaled, VectorXd(slope.cwiseQuotient(scale)))
+          .x.cwiseQuotient(scale);
+  const double most_Hz = kMostStep_bins / longest_s;
+  for (std::size_t i = 0; i < noise.waves.size(); ++i) {
+    const double by_Hz = std::clamp(steps_Hz[static_cast<Index>(i)], -most_Hz, most_Hz);
+    if (!std::isfinite(by_Hz)) continue;
+    noise.lines[i].frequency_Hz += by_Hz;
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      noise.waves[i][r] = with_frequency_moved(noise.waves[i][r], by_Hz, middle_s(data.records[r]));
+    }
+  }
 }
 
 double minus_two_log_likelihood(const plant_sim::ModelFile& model, const FitDataset& data,

@@ -48,10 +48,16 @@ struct InnovationData {
                                              const Linearisations& models, const NoiseModel& noise);
 
 /// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must
-/// come from `noise`, and tunes their frequencies.
+/// come from `noise`.
 void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
                   const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
                   const Linearisations& models, NoiseModel& noise);
+
+/// Moves the frequencies of lines whose waves are known by a Gauss-Newton step of at most a quarter
+/// of a bin; arguments as above.
+void tune_frequencies(const plant_sim::ModelFile& model, const FitDataset& data,
+                      const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
+                      const Linearisations& models, NoiseModel& noise);
 
 struct NoiseEstimate {
   NoiseModel noise;

@@ -16,7 +16,7 @@ using plant_sim::Ensemble;
 constexpr std::size_t kPlain = 0;
 constexpr std::size_t kMoved = 1;
 
-/// What the lines amount to at one moment.
+/// The sum of the lines at one moment, per site.
 struct LineValues {
   double force = 0.0;  ///< N, or m/s where the plant has no force
   double supply_Pa = 0.0;
@@ -44,14 +44,14 @@ LineValues values_at(double t_s, const std::vector<SpectralLine>& lines,
   return sum;
 }
 
-/// What the observer holds the lane without lines to.
-enum class HeldTo { measured, reading_with_lines };
+/// Correction by the weak observer: that of the lane without lines for both, or each lane's own.
+enum class Correction { common, own };
 
 Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
                                  const std::vector<FreeParameter>& parameters,
                                  const Eigen::VectorXd& theta,
                                  const std::vector<SpectralLine>& lines,
-                                 const std::vector<Eigen::Vector2d>& waves, HeldTo held_to) {
+                                 const std::vector<Eigen::Vector2d>& waves, Correction correction) {
   const std::unique_ptr<Ensemble> ensemble =
       plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -67,21 +67,22 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
   Eigen::VectorXd moved_m(static_cast<Eigen::Index>(record.size()));
   std::size_t segment = 0;
   for (std::size_t k = 0; k < record.size(); ++k) {
+    const LineValues line = values_at(record.t_s[k], lines, waves);
     if (segment < record.starts.size() && record.starts[segment] == k) {
+      // both lanes start from rest without lines
+      if (load) ensemble->set(*load, kMoved, load_N);
+      if (supply) ensemble->set(*supply, kMoved, supply_Pa);
       ensemble->start(record.y_m[k]);
       ++segment;
     }
-    const LineValues line = values_at(record.t_s[k], lines, waves);
     const Ensemble::Values reading_m = ensemble->reading_m();
     const double now_m = reading_m[kMoved] - reading_m[kPlain] + line.reading_m;
     moved_m[static_cast<Eigen::Index>(k)] = now_m;
     const double gain = record.observer_gain(k, kObserver_per_s);
     Ensemble::Values shift_m;
-    if (held_to == HeldTo::measured) {
-      shift_m.fill(gain * (record.y_m[k] - reading_m[kPlain]));
-    } else {
-      shift_m.fill(gain * (record.y_m[k] - reading_m[kMoved] - line.reading_m));
-      shift_m[kPlain] += gain * now_m;
+    shift_m.fill(gain * (record.y_m[k] - reading_m[kPlain]));
+    if (correction == Correction::own) {
+      shift_m[kMoved] = gain * (record.y_m[k] - reading_m[kMoved] - line.reading_m);
     }
     if (!load) shift_m[kMoved] += line.force * record.sample_time_s;
     ensemble->shift(shift_m);
@@ -101,7 +102,7 @@ Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Datas
                                   const Eigen::VectorXd& theta,
                                   const std::vector<SpectralLine>& lines,
                                   const std::vector<Eigen::Vector2d>& waves) {
-  return moved_by_lines_m(model, record, parameters, theta, lines, waves, HeldTo::measured);
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves, Correction::common);
 }
 
 Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model, const Dataset& record,
@@ -109,8 +110,7 @@ Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model, const 
                                        const Eigen::VectorXd& theta,
                                        const std::vector<SpectralLine>& lines,
                                        const std::vector<Eigen::Vector2d>& waves) {
-  return moved_by_lines_m(model, record, parameters, theta, lines, waves,
-                          HeldTo::reading_with_lines);
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves, Correction::own);
 }
 
 }  // namespace estimator::greybox::disturbance

@@ -1,5 +1,5 @@
-// What known spectral lines move a plant by, simulated: flow that saturates, friction and play let
-// less of a line through than the model linearised about its trajectory does.
+// Simulated effect of known spectral lines: flow that saturates, friction and play let less of a
+// line through than the model linearised about its trajectory does.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ namespace estimator::greybox::disturbance {
 
 /// Reading (samples, m) with the lines less that without them, of two simulations with `theta` that
 /// a weak observer corrects alike. `waves`: amplitudes of sine and cosine in the units of the
-/// sites. Throws as ObserverSimulation does.
+/// sites.
 [[nodiscard]] Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model,
                                                 const Dataset& record,
                                                 const std::vector<FreeParameter>& parameters,
@@ -22,8 +22,8 @@ namespace estimator::greybox::disturbance {
                                                 const std::vector<SpectralLine>& lines,
                                                 const std::vector<Eigen::Vector2d>& waves);
 
-/// Error (samples, m) that the lines leave in a simulation without them which a weak observer keeps
-/// at the reading; arguments as above.
+/// Error (samples, m) that the lines leave in a simulation without them, each of the two corrected
+/// by a weak observer of its own; arguments as above.
 [[nodiscard]] Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model,
                                                      const Dataset& record,
                                                      const std::vector<FreeParameter>& parameters,

@@ -153,9 +153,9 @@ MatrixXd line_response(const Linearisation& model, const Dataset& record,
   });
 }
 
-VectorXd frequency_response(const Linearisation& model, const Dataset& record,
-                            const InnovationGains& gains, const SpectralLine& line,
-                            const Eigen::Vector2d& wave, double at_s) {
+VectorXd frequency_sensitivity(const Linearisation& model, const Dataset& record,
+                               const InnovationGains& gains, const SpectralLine& line,
+                               const Eigen::Vector2d& wave, double at_s) {
   return response<1>(model, record, gains, line.site, [&](double t_s) {
     const double angle = 2.0 * std::numbers::pi * line.frequency_Hz * t_s;
     const double slope = wave[0] * std::cos(angle) - wave[1] * std::sin(angle);
@@ -163,7 +163,7 @@ VectorXd frequency_response(const Linearisation& model, const Dataset& record,
   });
 }
 
-Eigen::Vector2d turned(const Eigen::Vector2d& wave, double by_Hz, double at_s) {
+Eigen::Vector2d with_frequency_moved(const Eigen::Vector2d& wave, double by_Hz, double at_s) {
   const double angle = -2.0 * std::numbers::pi * by_Hz * at_s;
   return Eigen::Rotation2Dd(angle) * wave;
 }

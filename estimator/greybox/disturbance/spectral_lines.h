@@ -47,13 +47,15 @@ struct SpectralLine {
 
 /// Scaled innovations (samples) that a line with the wave causes per Hz that its frequency is
 /// higher, its phase at `at_s` kept.
-[[nodiscard]] Eigen::VectorXd frequency_response(const Linearisation& model, const Dataset& record,
-                                                 const InnovationGains& gains,
-                                                 const SpectralLine& line,
-                                                 const Eigen::Vector2d& wave, double at_s);
+[[nodiscard]] Eigen::VectorXd frequency_sensitivity(const Linearisation& model,
+                                                    const Dataset& record,
+                                                    const InnovationGains& gains,
+                                                    const SpectralLine& line,
+                                                    const Eigen::Vector2d& wave, double at_s);
 
-/// The wave whose phase at `at_s` is kept when its frequency rises by `by_Hz`.
-[[nodiscard]] Eigen::Vector2d turned(const Eigen::Vector2d& wave, double by_Hz, double at_s);
+/// The wave of a frequency that is `by_Hz` higher, with the value and slope that it has at `at_s`.
+[[nodiscard]] Eigen::Vector2d with_frequency_moved(const Eigen::Vector2d& wave, double by_Hz,
+                                                   double at_s);
 
 struct LineAmplitude {
   double amplitude = 0.0;  ///< N (m/s), Pa or m

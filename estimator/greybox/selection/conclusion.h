@@ -13,10 +13,15 @@ namespace estimator::greybox::selection {
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);
 
+/// Noise of the sensor: the data set's floor, or the noise model's where that is no more than a
+/// bound.
+[[nodiscard]] double sensor_noise_m(const SearchContext& search,
+                                    const InnovationSearch& innovations, bool floor_assumed);
+
 /// True where what sensor and disturbance would cause in a simulation, by the noise model, agrees
 /// with its error `rms_m`: what explains the samples has to explain the simulation too.
 [[nodiscard]] bool noise_is_credible(const SearchContext& search,
-                                     const InnovationSearch& innovations,
+                                     const InnovationSearch& innovations, double sensor_m,
                                      const std::optional<Disturbance>& disturbance, double rms_m);
 
 /// A verdict by the likelihood of innovations. `first`: the model as given, its parameters fitted.

@@ -32,14 +32,13 @@ constexpr double kPeriodsOfDrift = 4.0;
 void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
   if (innovations.final.model.added.empty() || search.cancelled()) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
-  const auto added_first = std::find_if(
-      innovations.rounds.begin(), innovations.rounds.end(), [&](const InnovationRound& round) {
-        return !round.candidates.empty() &&
-               round.candidates.front().effect == innovations.final.model.added.front();
-      });
-  const FitSummary& without = added_first == innovations.rounds.end()
+  // the model without effects, with the lines that were known before the first of them
+  const auto plain_round =
+      std::find_if(innovations.rounds.rbegin(), innovations.rounds.rend(),
+                   [](const InnovationRound& round) { return round.before.added.empty(); });
+  const FitSummary& without = plain_round == innovations.rounds.rend()
                                   ? innovations.before.model.fitted
-                                  : added_first->before.fitted;
+                                  : plain_round->before.fitted;
   const double without_m = simulated(search, without).validation_rms_m;
   if (with_m < (1.0 + kClearlyWorse) * without_m) return;
   InnovationSearch plain;
@@ -71,14 +70,14 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   // what the likelihood prefers is no better model where its simulation is the worse one, unless
   // the disturbance is as large: a fit of simulations follows that
   const std::optional<Disturbance> disturbance = disturbance_of(search, innovations);
-  const double expected_m = std::max(
-      first.fitted.validation_rms_m,
-      std::hypot(search.problem.data.noise_floor_m, disturbance ? disturbance->rms_m : 0.0));
+  const double sensor_m = sensor_noise_m(search, innovations, result.floor_assumed);
+  const double expected_m = std::max(first.fitted.validation_rms_m,
+                                     std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0));
   const bool worse = !(held.validation_rms_m <= (1.0 + kClearlyWorse) * expected_m);
   const bool understood =
       innovations.load_sets_in() ||
       (!innovations.physics_missing() &&
-       noise_is_credible(search, innovations, disturbance, held.validation_rms_m));
+       noise_is_credible(search, innovations, sensor_m, disturbance, held.validation_rms_m));
   if (context.cancelled() || (!worse && understood)) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;

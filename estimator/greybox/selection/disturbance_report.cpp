@@ -20,7 +20,7 @@ struct RecordDisturbance {
   double random_m2 = 0.0;
   double walk_m2 = 0.0;  ///< what the walk of the position alone would cause
   std::vector<disturbance::LineAmplitude> lines;
-  double lines_m2 = 0.0;  ///< all of them together; friction makes more of them than their sum
+  double lines_m2 = 0.0;  ///< together; they may break friction loose that each alone does not
 };
 
 RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {

@@ -14,7 +14,7 @@ struct DisturbanceLine {
   std::string as;  ///< "force", "pressure", "sensor"; "speed" where the plant has no force
   double frequency_Hz = 0.0;
   double amplitude = 0.0;  ///< N, Pa, m; m/s
-  double rms_m = 0.0;      ///< its part of the simulation's error
+  double rms_m = 0.0;      ///< its part of the error of a simulation without friction or play
 };
 
 struct Disturbance {

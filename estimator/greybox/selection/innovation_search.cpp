@@ -181,7 +181,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
     if (trials[i].candidate.settled) trials[i].candidate.fitted = stages[i].model.fitted;
     trials[i].candidate.fitted.jacobian.resize(0, 0);
   }
-  InnovationRound round{stage.model, {}};
+  InnovationRound round{stage.model, {}, chosen != none};
   round.before.fitted.jacobian.resize(0, 0);
   if (chosen != none) round.candidates.push_back(trials[chosen].candidate);
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -210,13 +210,13 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   candidate.gain_nats = 0.5 * (penalised(stage) - penalised(other));
   candidate.fitted = other.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
-  rounds.push_back({stage.model, {std::move(candidate)}});
+  rounds.push_back({stage.model, {std::move(candidate)}, true});
   stage = other;
 }
 
 /// The final stage without effect `i`.
-InnovationStage without_effect(const SearchContext& context, const InnovationSearch& search,
-                               const InnovationStage& final, std::size_t i) {
+InnovationStage stage_without(const SearchContext& context, const InnovationSearch& search,
+                              const InnovationStage& final, std::size_t i) {
   if (search.without.size() > i) return search.without[i];
   if (final.model.added.size() + final.noise.lines.size() == 1) return search.before;
   return without(context, final, final.model.added[i]);
@@ -228,14 +228,18 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
   if (stage.model.added.size() + stage.noise.lines.size() < 2) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
-    InnovationStage without = without_effect(context, search, stage, i);
+    InnovationStage without = stage_without(context, search, stage, i);
     std::vector<InnovationStage> others = exchanges(context, stage, added[i], without);
     search.rivals[added[i]] = rivals_among(stage, added[i], others);
     std::erase_if(others, [](const auto& other) { return !effect_out_of_range(other).empty(); });
     const auto best =
         std::min_element(others.begin(), others.end(),
                          [](const auto& a, const auto& b) { return penalised(a) < penalised(b); });
-    if (best == others.end() || !(penalised(*best) < penalised(stage))) continue;
+    if (best == others.end() || !(penalised(*best) < penalised(stage) - 2.0 * kRivals_nats))
+      continue;
+    InnovationStage polished =
+        settled(context, best->model, best->noise, kMostTurns, wide(context.options.threads));
+    if (polished.minus_two_log < best->minus_two_log) *best = std::move(polished);
     InnovationCandidate candidate;
     candidate.effect = best->model.added.back();
     candidate.settled = true;
@@ -245,8 +249,9 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
     candidate.fitted = stage.model.fitted;
     candidate.fitted.jacobian.resize(0, 0);
     without.model.fitted.jacobian.resize(0, 0);
-    search.rounds.push_back({std::move(without.model), {std::move(candidate)}});
+    search.rounds.push_back({std::move(without.model), {std::move(candidate)}, true});
     search.rivals.clear();
+    search.without.clear();
     return true;
   }
   return false;
@@ -268,11 +273,8 @@ SearchContext without_holdouts(SearchContext context) {
 double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
   double sum_nats = 0.0;
   for (const InnovationRound& round : rounds) {
-    if (round.candidates.empty()) continue;
-    const InnovationCandidate& first = round.candidates.front();
-    if (first.effect.empty() && first.settled && first.gain_nats > kEvidence_nats) {
-      sum_nats += first.gain_nats + first.penalty_nats;
-    }
+    if (!round.taken || !round.candidates.front().effect.empty()) continue;
+    sum_nats += round.candidates.front().gain_nats + round.candidates.front().penalty_nats;
   }
   return sum_nats;
 }
@@ -283,10 +285,7 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
 
 void note_gains(InnovationSearch& search, const InnovationStage& final) {
   for (const InnovationRound& round : search.rounds) {
-    // the last round has taken none
-    if (round.candidates.empty() || !is_among(final.model.added, round.candidates.front().effect)) {
-      continue;
-    }
+    if (!round.taken || !is_among(final.model.added, round.candidates.front().effect)) continue;
     const InnovationCandidate& taken = round.candidates.front();
     search.gains_nats[taken.effect] = taken.gain_nats;
   }
@@ -321,12 +320,12 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   };
   extend_fully();
   take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
-  for (int exchanges = 0; !context.cancelled(); ++exchanges) {
-    search.inexact_nats = inexact_nats();
-    search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
-    if (exchanges == kMostExchanges || !exchange(context, search, stage)) break;
+  for (int round = 0; !context.cancelled(); ++round) {
+    search.without = eliminate(context, stage, kEvidence_nats + inexact_nats());
+    if (round == kMostExchanges || !exchange(context, search, stage)) break;
     extend_fully();
   }
+  search.inexact_nats = inexact_nats();
   note_gains(search, stage);
   search.final = std::move(stage);
   weigh_remainder(context, search);
@@ -378,7 +377,7 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,
             ? known->second
             : rivals_among(search.final, added[i],
                            exchanges(context, search.final, added[i],
-                                     without_effect(context, search, search.final, i)));
+                                     stage_without(context, search, search.final, i)));
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

@@ -35,6 +35,7 @@ inline constexpr double kStandsOut = 3.0;
 struct InnovationRound {
   ModelStage before;                            ///< without Jacobian
   std::vector<InnovationCandidate> candidates;  ///< the one taken, if any, then the best first
+  bool taken = false;                           ///< the first candidate
 };
 
 struct InnovationSearch {
@@ -42,7 +43,7 @@ struct InnovationSearch {
   InnovationStage final;
   std::vector<InnovationRound> rounds;
   std::vector<InnovationStage> without;  ///< `final` without each of its effects, where known
-  /// Per effect what explains the record about as well in its place, where known.
+  /// For each effect, those that explain the record about as well in its place; empty: not known.
   std::map<std::string, InnovationRivals> rivals;
   /// Nats that the absence of each effect would cost; where not known, its gain when it was added.
   std::map<std::string, double> gains_nats;

@@ -100,6 +100,11 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
     const double gain = best.minus_two_log - stage.minus_two_log;
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;
+    if (i + 1 < turns) {
+      disturbance::tune_frequencies(stage.context.problem.model, stage.context.problem.data,
+                                    stage.model.fitted.parameters, stage.model.fitted.theta,
+                                    stage.linear, stage.noise);
+    }
   }
   return best;
 }

@@ -69,10 +69,18 @@ std::string shared_site(const std::vector<std::string>& effects) {
   return site;
 }
 
-/// True where a parameter of the plant has come to the end of its range.
-bool strains_the_plant(const FitSummary& fitted) {
+/// True where a parameter of the plant has come to the end of its range, which it has not without
+/// the effects.
+bool strains_the_plant(const FitSummary& fitted, const FitSummary& without) {
+  const auto was_there = [&](const std::string& name) {
+    for (std::size_t i = 0; i < without.at_bound.size(); ++i) {
+      if (without.parameters[i].name == name) return without.at_bound[i] != 0;
+    }
+    return false;
+  };
   for (std::size_t i = 0; i < fitted.at_bound.size(); ++i) {
-    if (fitted.at_bound[i] != 0 && fitted.parameters[i].name.find('.') == std::string::npos)
+    if (fitted.at_bound[i] != 0 && !was_there(fitted.parameters[i].name) &&
+        fitted.parameters[i].name.find('.') == std::string::npos)
       return true;
   }
   return false;
@@ -95,8 +103,8 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
   // several effects may stand in for one law, at any site
-  const bool everywhere =
-      added.size() > 1 && (innovations.physics_missing() || strains_the_plant(named.model.fitted));
+  const bool everywhere = added.size() > 1 && (innovations.physics_missing() ||
+                                               strains_the_plant(named.model.fitted, first.fitted));
   const std::string site = everywhere ? "" : shared_site(added);
   if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked

@@ -13,6 +13,7 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
   double squares_m2 = 0.0;
   double squares_m2ps2 = 0.0;
   double squares_V2 = 0.0;
+  double sum_V = 0.0;
   double most_V = 0.0;
   double least_m = std::numeric_limits<double>::infinity();
   double most_m = -least_m;
@@ -29,6 +30,7 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
       squares_m2 += (record.y_m[k] - mean_m) * (record.y_m[k] - mean_m);
       squares_m2ps2 += speed_mps * speed_mps;
       squares_V2 += record.u_V[k] * record.u_V[k];
+      sum_V += record.u_V[k];
       most_V = std::max(most_V, std::abs(record.u_V[k]));
       samples += 1.0;
     }
@@ -36,6 +38,8 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
   scale.length_m = std::sqrt(squares_m2 / samples);
   scale.speed_mps = std::sqrt(squares_m2ps2 / samples);
   scale.command_V = std::sqrt(squares_V2 / samples);
+  const double mean_V = sum_V / samples;
+  scale.command_sd_V = std::sqrt(std::max(0.0, squares_V2 / samples - mean_V * mean_V));
   scale.most_command_V = most_V;
   scale.centre_m = 0.5 * (least_m + most_m);
   if (const auto oil = plant_sim::hydraulics_of(model)) {
@@ -44,7 +48,6 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
     scale.force_N = oil->area_m2 * oil->supply_pressure_Pa;
   } else if (const double* const gain = model.value("gain_N_per_V")) {
     scale.force_N = *gain * most_V;
-    scale.drive_N = *gain * scale.command_V;
   }
   return scale;
 }

@@ -12,9 +12,9 @@ struct RigScale {
   double centre_m = 0.3;   ///< middle of the motion
   double speed_mps = 0.06;
   double command_V = 0.7;
+  double command_sd_V = 0.7;  ///< about its mean
   double most_command_V = 4.0;
   double force_N = 4400.0;  ///< greatest
-  double drive_N = 0.0;     ///< RMS of the command's force; 0 where it commands none
   double pressure_Pa = 6.9e6;
   double area_m2 = 6.3e-4;
 };

@@ -37,7 +37,7 @@ constexpr double kNearFloor = 5.0;
 constexpr double kLargeGain = 0.1;
 
 bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
-  // between the samples of a slow log the command is not known: what is below its floor is nobody's
+  // between the samples of a slow log the command is not known: that error may be all there is
   if (!floor_shows_lead(context.problem.data) && is_explained(context, stage)) return false;
   const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;

@@ -68,7 +68,7 @@ TEST(SimulatedLines, AForceBelowFrictionMovesNothingAtRest) {
   EXPECT_GT(moved_by(80.0), 1e-6);
 }
 
-// Of a shaking sensor the observer follows what is slower than it is.
+// The observer follows a shake that is slower than it is.
 TEST(SimulatedLines, TheErrorOfAFastLineIsTheLineItself) {
   const Dataset record = axis_record(2000);
   const std::vector<SpectralLine> lines = {{LineSite::sensor, kFrequency_Hz}};

@@ -76,6 +76,31 @@ TEST(SpectralLines, AShakingSensorIsFoundWithFrequencyAndAmplitude) {
               0.05 * 3e-6);
 }
 
+TEST(SpectralLines, TheSensitivityToAFrequencyIsThatOfADifferenceQuotient) {
+  const AxisFilter s;
+  const Eigen::Vector2d wave(2.0, -1.5);
+  constexpr double kStep_Hz = 1e-5;
+  constexpr double kMiddle_s = 4.0;
+  const auto response = [&](double by_Hz) -> Eigen::VectorXd {
+    return line_response(s.model, s.record, s.gains, {LineSite::force, kFrequency_Hz + by_Hz}) *
+           with_frequency_moved(wave, by_Hz, kMiddle_s);
+  };
+  const Eigen::VectorXd quotient = (response(kStep_Hz) - response(-kStep_Hz)) / (2.0 * kStep_Hz);
+  const Eigen::VectorXd slope = frequency_sensitivity(
+      s.model, s.record, s.gains, {LineSite::force, kFrequency_Hz}, wave, kMiddle_s);
+  EXPECT_LT((quotient - slope).norm(), 1e-4 * slope.norm());
+}
+
+TEST(SpectralLines, AMovedFrequencyKeepsTheValueAtItsMoment) {
+  const Eigen::Vector2d wave(2.0, -1.5);
+  constexpr double kAt_s = 3.7;
+  const auto value = [&](double frequency_Hz, const Eigen::Vector2d& of) {
+    const double angle = 2.0 * std::numbers::pi * frequency_Hz * kAt_s;
+    return of.dot(Eigen::Vector2d(std::sin(angle), std::cos(angle)));
+  };
+  EXPECT_NEAR(value(11.4, with_frequency_moved(wave, 0.1, kAt_s)), value(11.3, wave), 1e-12);
+}
+
 // The predictor of a record whose line is known sees the record without it.
 TEST(SpectralLines, AKnownLineLeavesTheInnovationsOfAStillSensor) {
   AxisFilter s;

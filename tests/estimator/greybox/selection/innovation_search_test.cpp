@@ -27,6 +27,8 @@ TEST(InnovationSearch, AnEffectTakenBeforeALineIsExchangedForTheRightOne) {
       "motion=multisine,length_s=15,entrained_air.fraction_ratio=0.25,"
       "outside.pulsation_Pa=192015,outside.pulsation_Hz=16.459",
       535660023);
+  ASSERT_FALSE(found.rounds.empty());
+  EXPECT_THAT(found.rounds.front().candidates.front().effect, testing::Ne("entrained_air"));
   EXPECT_THAT(found.final.model.added, ElementsAre("entrained_air"));
   EXPECT_FALSE(found.physics_missing());
 }

@@ -37,7 +37,7 @@ double typical(const std::string& name, double stroke_m) {
   return std::nan("");
 }
 
-// Bristles yield over micrometres, a spring of the load over the stroke.
+// Bristles yield over micrometres; speeds go with the stroke.
 TEST(TypicalSizes, ABristlesStiffnessDoesNotGoWithTheStroke) {
   EXPECT_DOUBLE_EQ(typical("presliding_stiffness_N_per_m", 0.001),
                    typical("presliding_stiffness_N_per_m", 1.0));
