@@ -187,11 +187,13 @@ std::optional<ChangeSearch> search_changes(const SearchContext& context, const M
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
   search.innovations.before = stage;
+  add_lines(context, search.innovations, stage);
   if (motion_explains_more(stage)) return {};
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(context, stage, search, taken)) {
   }
   if (search.changes.empty() || context.cancelled()) return {};
+  add_lines(search.context, search.innovations, stage);
   const FitSummary& fitted = stage.model.fitted;
   const FitDataset& data = stage.context.problem.data;
   const Eigen::VectorXd errors = std_errors(data, data.all_mask, fitted);

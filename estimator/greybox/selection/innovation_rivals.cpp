@@ -1,10 +1,12 @@
 #include "estimator/greybox/selection/innovation_rivals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 
@@ -84,26 +86,28 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   }
   const double worth_polishing_nats =
       kWorthPolishing_nats + kWorthPolishing * 0.5 * (penalised(without) - penalised(final));
-  std::vector<InnovationStage> found;
-  std::size_t tried = 0;
-  for (const InnovationTrial& rival : rivals) {
-    const std::string& name = rival.candidate.effect;
-    const auto& added = final.model.added;
-    if (std::find(added.begin(), added.end(), name) != added.end()) continue;
+  const std::vector<std::string>& added = final.model.added;
+  std::erase_if(rivals, [&](const InnovationTrial& rival) {
     const bool far =
         rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
-    if ((far && !rival.simulated) || ++tried > kFinalists) continue;
-    InnovationStage other = settled(plain, without, rival);
-    const double behind_nats = 0.5 * (penalised(other) - penalised(final));
-    if (behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats) {
-      InnovationStage polished =
-          settled(plain, other.model, other.noise, kMostTurns, wide(plain.options.threads));
-      if (polished.minus_two_log < other.minus_two_log) other = std::move(polished);
-    }
-    if (!leaves_its_range(other.model.fitted, without.model.fitted.parameters.size())) {
-      found.push_back(std::move(other));
-    }
-  }
+    return (far && !rival.simulated) ||
+           std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
+  });
+  rivals.resize(std::min(rivals.size(), kFinalists));
+  std::vector<InnovationStage> found(rivals.size());
+  const unsigned threads = plain.options.threads;
+  const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
+  in_parallel(rivals.size(), threads, [&](std::size_t i) {
+    found[i] = settled(plain, without, rivals[i]);
+    const double behind_nats = 0.5 * (penalised(found[i]) - penalised(final));
+    if (!(behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats)) return;
+    InnovationStage polished = settled(plain, found[i].model, found[i].noise, kMostTurns, width);
+    if (polished.minus_two_log < found[i].minus_two_log) found[i] = std::move(polished);
+  });
+  std::erase_if(found, [&](const InnovationStage& other) {
+    return !std::isfinite(other.minus_two_log) ||
+           leaves_its_range(other.model.fitted, without.model.fitted.parameters.size());
+  });
   return found;
 }
 

@@ -105,7 +105,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
             double evidence_nats, std::vector<InnovationRound>& rounds,
             std::vector<std::string>& dropped) {
   std::vector<InnovationTrial> trials;
-  if (stage.model.added.size() < kMostEffects) {
+  if (!plain.problem.candidate_effects.empty() && stage.model.added.size() < kMostEffects) {
     trials = effect_trials(stage);
     add_simulated_starts(stage, simulated_effects(plain, stage, held), trials);
     std::erase_if(trials, [&](const InnovationTrial& trial) {
@@ -162,16 +162,22 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
   std::size_t chosen = likeliest();
   while (chosen != none && polished[chosen] == 0 && !plain.cancelled()) {
     const double best_nats = trials[chosen].candidate.gain_nats;
-    in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
-      InnovationCandidate& candidate = trials[i].candidate;
+    std::vector<std::size_t> contenders;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      const InnovationCandidate& candidate = trials[i].candidate;
       const bool contends = candidate.gain_nats > best_nats - kContends_nats;
-      if (plain.cancelled() || polished[i] != 0 || !candidate.settled || !contends) return;
+      if (contends && candidate.settled && polished[i] == 0) contenders.push_back(i);
+    }
+    const unsigned threads = plain.options.threads;
+    const SimulationWidth width = contenders.size() == 1 ? wide(threads) : SimulationWidth{};
+    in_parallel(contenders.size(), threads, [&](std::size_t k) {
+      const std::size_t i = contenders[k];
+      if (plain.cancelled()) return;
       polished[i] = 1;
-      InnovationStage turned =
-          settled(plain, stages[i].model, stages[i].noise, kMostTurns, SimulationWidth{});
+      InnovationStage turned = settled(plain, stages[i].model, stages[i].noise, kMostTurns, width);
       if (!(turned.minus_two_log < stages[i].minus_two_log)) return;
       stages[i] = std::move(turned);
-      candidate.gain_nats =
+      trials[i].candidate.gain_nats =
           0.5 * (stage.minus_two_log - stages[i].minus_two_log) - trials[i].penalty_nats;
     });
     chosen = likeliest();
@@ -279,6 +285,15 @@ double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
   return sum_nats;
 }
 
+/// Gains that the stage may owe to inexact models of what the search has explained.
+double inexact_nats(const SearchContext& context, const InnovationSearch& search,
+                    const InnovationStage& stage) {
+  const double all_nats = 0.5 * (search.before.minus_two_log - stage.minus_two_log);
+  const double lines_nats = gained_by_lines_nats(search.rounds);
+  return kInterpolated * context.problem.interpolated_nats +
+         kInexact * std::max(0.0, all_nats - lines_nats) + kInexactLines * lines_nats;
+}
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -306,30 +321,34 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
-  const auto inexact_nats = [&] {
-    const double all_nats = 0.5 * (search.before.minus_two_log - stage.minus_two_log);
-    const double lines_nats = gained_by_lines_nats(search.rounds);
-    return kInterpolated * context.problem.interpolated_nats +
-           kInexact * std::max(0.0, all_nats - lines_nats) + kInexactLines * lines_nats;
-  };
+  const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::vector<std::string> dropped;
   const auto extend_fully = [&] {
     while (!context.cancelled() &&
-           extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds, dropped)) {
+           extend(context, stage, held, evidence_nats(), search.rounds, dropped)) {
     }
   };
   extend_fully();
-  take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
+  take_held(context, held.stage, evidence_nats(), stage, search.rounds);
   for (int round = 0; !context.cancelled(); ++round) {
-    search.without = eliminate(context, stage, kEvidence_nats + inexact_nats());
+    search.without = eliminate(context, stage, evidence_nats());
     if (round == kMostExchanges || !exchange(context, search, stage)) break;
     extend_fully();
   }
-  search.inexact_nats = inexact_nats();
+  search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);
   search.final = std::move(stage);
   weigh_remainder(context, search);
   return search;
+}
+
+void add_lines(SearchContext context, InnovationSearch& search, InnovationStage& stage) {
+  context.problem.candidate_effects.clear();
+  std::vector<std::string> dropped;
+  while (!context.cancelled() &&
+         extend(context, stage, {}, kEvidence_nats + inexact_nats(context, search, stage),
+                search.rounds, dropped)) {
+  }
 }
 
 disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
@@ -359,9 +378,18 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
     search.jump = {};
 }
 
-std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,
-                                          const InnovationSearch& search) {
+std::vector<InnovationStage> replacements(const SearchContext& with_holdouts,
+                                          const InnovationSearch& search, std::size_t i) {
   const SearchContext context = without_holdouts(with_holdouts);
+  InnovationStage without = stage_without(context, search, search.final, i);
+  FitDataset data = std::move(without.context.problem.data);
+  without.context = context;
+  without.context.problem.data = std::move(data);
+  return exchanges(context, search.final, search.final.model.added[i], without);
+}
+
+std::vector<InnovationRivals> find_rivals(const SearchContext& context,
+                                          const InnovationSearch& search) {
   const std::vector<std::string>& added = search.final.model.added;
   std::vector<InnovationRivals> groups;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
@@ -375,9 +403,7 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,
     InnovationRivals group =
         known != search.rivals.end()
             ? known->second
-            : rivals_among(search.final, added[i],
-                           exchanges(context, search.final, added[i],
-                                     stage_without(context, search, search.final, i)));
+            : rivals_among(search.final, added[i], replacements(context, search, i));
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

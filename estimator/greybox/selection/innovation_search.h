@@ -71,11 +71,19 @@ struct InnovationSearch {
                                                   const ModelStage& first,
                                                   const SearchBranch& held);
 
+/// Adds spectral lines to the stage that a search has reached, and their rounds to the search.
+void add_lines(SearchContext context, InnovationSearch& search, InnovationStage& stage);
+
 /// The likeliest load that sets in at one sample.
 [[nodiscard]] disturbance::ForceJump likeliest_jump(const InnovationStage& stage);
 
 /// Sets what the final model leaves: the gain of curves over the motion, and the likeliest jump.
 void weigh_remainder(const SearchContext& context, InnovationSearch& search);
+
+/// The final model with other effects of `context` in the place of its i-th effect, as exchanges().
+[[nodiscard]] std::vector<InnovationStage> replacements(const SearchContext& context,
+                                                        const InnovationSearch& search,
+                                                        std::size_t i);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

@@ -22,14 +22,30 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
   return result;
 }
 
+std::vector<Law> laws_at(const SearchContext& context, const std::string& site) {
+  std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
+  if (!site.empty())
+    std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
+  return dictionary;
+}
+
 }  // namespace
+
+bool law_displaces(const SearchContext& context, const std::string& site,
+                   const InnovationSearch& named) {
+  const std::vector<Law> dictionary = laws_at(context, site);
+  if (dictionary.empty() || context.cancelled()) return false;
+  const std::vector<InnovationStage> others =
+      replacements(with_laws(context, dictionary, {}), named, 0);
+  return std::any_of(others.begin(), others.end(), [&](const InnovationStage& other) {
+    return penalised(other) < penalised(named.final) - 2.0 * kRivals_nats;
+  });
+}
 
 std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first,
                                      const std::string& site,
                                      const std::vector<std::string>& effects) {
-  std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
-  if (!site.empty())
-    std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
+  const std::vector<Law> dictionary = laws_at(context, site);
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
   search.innovations = search_innovations(search.context, first, {});

@@ -160,6 +160,20 @@ TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
   EXPECT_NEAR(change.to / change.from, 1.9, 0.1);
 }
 
+TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
+  const SearchContext context = context_of(
+      "motion=multisine,length_s=20,plant.damping_N_s_per_m=1000,"
+      "at9:plant.damping_N_s_per_m=1700,outside.shake_m=2e-5,outside.shake_Hz=43.217");
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  EXPECT_EQ(found->changes.front().parameter, "damping_N_s_per_m");
+  const auto& lines = found->innovations.final.noise.lines;
+  ASSERT_THAT(lines, SizeIs(1));
+  EXPECT_NEAR(lines.front().frequency_Hz, 43.217, 0.01);
+  EXPECT_EQ(lines.front().site, disturbance::LineSite::sensor);
+}
+
 TEST(Changes, ANullThatDriftsIsNoMotionThatOtherParametersFollow) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=30,left_out=null_drift,left_out.size=0.06,outside.force_N=20");
