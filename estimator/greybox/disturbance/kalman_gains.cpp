@@ -1,9 +1,13 @@
 #include "estimator/greybox/disturbance/kalman_gains.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "estimator/greybox/disturbance/predictor.h"
+#include "estimator/greybox/disturbance/riccati_lanes.h"
 #include "estimator/greybox/observer_simulation.h"
 
 namespace estimator::greybox::disturbance {
@@ -50,36 +54,52 @@ void propagate(StateMatrix& p, StateMatrix a, double decay, const NoiseParameter
 
 }  // namespace
 
-KalmanGains kalman_gains(const Linearisation& model, const Dataset& record,
-                         const NoiseParameters& noise, double floor_m) {
+std::vector<KalmanGains> kalman_gains(const Linearisation& model, const Dataset& record,
+                                      std::span<const NoiseParameters> noise, double floor_m) {
   const auto samples = static_cast<Eigen::Index>(record.size());
   const auto count = static_cast<Eigen::Index>(model.states.size());
-  KalmanGains result;
-  result.gains.states = model.states;
-  result.gains.decay = decay_of(noise, record.sample_time_s);
-  result.gains.gain.resize(count + 1, samples);
-  result.gains.scale.resize(samples);
-  StateMatrix p = StateMatrix::Zero();
-  std::size_t segment = 0;
-  for (Eigen::Index k = 0; k < samples; ++k) {
-    const auto row = static_cast<std::size_t>(k);
-    if (segment < record.starts.size() && record.starts[segment] == row) {
-      p = start_covariance(model, record, row, noise);
-      ++segment;
+  std::vector<KalmanGains> all(noise.size());
+  for (std::size_t first = 0; first < noise.size(); first += kNoiseLanes) {
+    const std::size_t lanes = std::min(kNoiseLanes, noise.size() - first);
+    LaneNoise each;
+    std::array<LaneResult, kNoiseLanes> results;
+    for (std::size_t lane = 0; lane < kNoiseLanes; ++lane) {
+      const NoiseParameters& one = noise[first + std::min(lane, lanes - 1)];
+      each.decay[lane] = decay_of(one, record.sample_time_s);
+      each.disturbance[lane] = one.disturbance_sd * one.disturbance_sd;
+      each.walk_m2[lane] = one.walk_m * one.walk_m;
+      each.sensor_m2[lane] = one.sensor_m * one.sensor_m;
     }
-    const double s_m2 = p(0, 0) + noise.sensor_m * noise.sensor_m;
-    const StateVector gain = p.col(0) / s_m2;
-    result.gains.gain.col(k).head(count) = gain.head(count);
-    result.gains.gain(count, k) = gain[kDisturbance];
-    result.gains.scale[k] = floor_m / std::sqrt(s_m2);
-    if (record.valid[row] != 0) {
-      result.log_determinant += std::log(s_m2 / (floor_m * floor_m));
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      InnovationGains& gains = all[first + lane].gains;
+      gains.states = model.states;
+      gains.decay = each.decay[lane];
+      gains.gain.resize(count + 1, samples);
+      gains.scale.resize(samples);
+      results[lane] = {gains.gain.data(), gains.scale.data()};
     }
-    p -= gain * p.row(0).eval();
-    p = (0.5 * (p + p.transpose())).eval();
-    propagate(p, model.transition[row], result.gains.decay, noise);
+    std::array<StateMatrix, kNoiseLanes> start;
+    start.fill(StateMatrix::Zero());
+    std::size_t from = 0;
+    for (std::size_t segment = 0; segment <= record.starts.size(); ++segment) {
+      const bool last = segment == record.starts.size();
+      const std::size_t to = last ? record.size() : record.starts[segment];
+      riccati(model, record.valid.data(), from, to, start, each, floor_m, results, lanes);
+      for (std::size_t lane = 0; lane < kNoiseLanes && !last; ++lane) {
+        start[lane] = start_covariance(model, record, to, noise[first + std::min(lane, lanes - 1)]);
+      }
+      from = to;
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      all[first + lane].log_determinant = results[lane].log_determinant;
+    }
   }
-  return result;
+  return all;
+}
+
+KalmanGains kalman_gains(const Linearisation& model, const Dataset& record,
+                         const NoiseParameters& noise, double floor_m) {
+  return std::move(kalman_gains(model, record, std::span(&noise, 1), floor_m).front());
 }
 
 double disturbed_rms_m(const Linearisation& model, const Dataset& record,

@@ -7,6 +7,9 @@
 // simulation assumes. Source: B. D. O. Anderson, J. B. Moore, Optimal Filtering (1979), chapter 4.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "estimator/greybox/disturbance/linearisation.h"
 #include "estimator/greybox/innovation_gains.h"
 
@@ -24,7 +27,11 @@ struct KalmanGains {
   double log_determinant = 0.0;  ///< sum over valid samples of log(S / floor_m^2)
 };
 
-/// `floor_m` > 0 is the unit in which scaled innovations count.
+/// One for each noise model. `floor_m` > 0 is the unit in which scaled innovations count.
+[[nodiscard]] std::vector<KalmanGains> kalman_gains(const Linearisation& model,
+                                                    const Dataset& record,
+                                                    std::span<const NoiseParameters> noise,
+                                                    double floor_m);
 [[nodiscard]] KalmanGains kalman_gains(const Linearisation& model, const Dataset& record,
                                        const NoiseParameters& noise, double floor_m);
 

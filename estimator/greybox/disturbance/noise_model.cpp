@@ -125,15 +125,16 @@ class Likelihood {
   std::vector<double> operator()(const std::vector<Point>& points) {
     std::vector<double> cost(points.size(), 0.0);
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      std::vector<KalmanGains> gains(points.size());
+      std::vector<NoiseParameters> noise;
+      for (const Point& point : points) noise.push_back(noise_of(point));
+      std::vector<KalmanGains> gains =
+          kalman_gains((*models_)[r], records_[r], noise, data_->noise_floor_m);
       std::vector<MatrixXd> lines(points.size());
-      in_parallel(points.size(), threads_, [&](std::size_t i) {
-        gains[i] =
-            kalman_gains((*models_)[r], records_[r], noise_of(points[i]), data_->noise_floor_m);
-        if (!lines_->empty()) {
+      if (!lines_->empty()) {
+        in_parallel(points.size(), threads_, [&](std::size_t i) {
           lines[i] = basis_of(line_responses((*models_)[r], records_[r], gains[i].gains, *lines_));
-        }
-      });
+        });
+      }
       std::vector<InnovationGains> each;
       each.reserve(gains.size());
       for (KalmanGains& one : gains) {

@@ -179,20 +179,14 @@ bool motion_explains_more(const InnovationStage& stage) {
   return false;
 }
 
-}  // namespace
-
-std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base) {
-  if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
-  ChangeSearch search{context, {}, {}};
-  InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
-  if (!std::isfinite(stage.minus_two_log)) return {};
-  search.innovations.before = stage;
-  add_lines(context, search.innovations, stage);
+/// The changes found from a stage on, and the lines that are seen beside them.
+std::optional<ChangeSearch> searched(ChangeSearch search, InnovationStage stage) {
+  const SearchContext plain = search.context;
   if (motion_explains_more(stage)) return {};
   std::vector<ChangeScore> taken;
-  while (taken.size() < kMostChanges && add_change(context, stage, search, taken)) {
+  while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
   }
-  if (search.changes.empty() || context.cancelled()) return {};
+  if (search.changes.empty() || plain.cancelled()) return {};
   add_lines(search.context, search.innovations, stage);
   const FitSummary& fitted = stage.model.fitted;
   const FitDataset& data = stage.context.problem.data;
@@ -206,6 +200,21 @@ std::optional<ChangeSearch> search_changes(const SearchContext& context, const M
   weigh_remainder(search.context, search.innovations);
   if (search.innovations.physics_missing()) return {};
   return search;
+}
+
+}  // namespace
+
+std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base) {
+  if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
+  ChangeSearch search{context, {}, {}};
+  InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
+  if (!std::isfinite(stage.minus_two_log)) return {};
+  search.innovations.before = stage;
+  if (std::optional<ChangeSearch> found = searched(search, stage)) return found;
+  // a strong line hides a change, as a drift passes for a slow line
+  add_lines(context, search.innovations, stage);
+  if (stage.noise.lines.empty()) return {};
+  return searched(std::move(search), std::move(stage));
 }
 
 }  // namespace estimator::greybox::selection

@@ -31,6 +31,8 @@ constexpr double kInexactLines = 0.0005;
 /// Lead of the likeliest candidate that another may make up for when its noise model and parameters
 /// have converged together.
 constexpr double kContends_nats = 30.0;
+/// Lag of another search's model in -2 log L after one turn that further turns do not make up for.
+constexpr double kOutOfReach = 400.0;
 /// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
 /// one.
 constexpr double kOnALine = 0.05;
@@ -205,8 +207,10 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
 void take_held(const SearchContext& context, const ModelStage& held, double evidence_nats,
                InnovationStage& stage, std::vector<InnovationRound>& rounds) {
   if (held.added.empty() || context.cancelled()) return;
-  const InnovationStage other =
-      settled(context, held, stage.noise, kMostTurns, wide(context.options.threads));
+  const SimulationWidth width = wide(context.options.threads);
+  InnovationStage other = settled(context, held, stage.noise, 1, width);
+  if (!(penalised(other) < penalised(stage) + kOutOfReach)) return;
+  other = settled(context, other.model, other.noise, kMostTurns, width);
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   if (!effect_out_of_range(other).empty()) return;
   InnovationCandidate candidate;
@@ -231,7 +235,8 @@ InnovationStage stage_without(const SearchContext& context, const InnovationSear
 /// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
 /// and other effects were not known may have stood for these and another effect together.
 bool exchange(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
-  if (stage.model.added.size() + stage.noise.lines.size() < 2) return false;
+  const std::size_t effects = stage.model.added.size();
+  if (effects + stage.noise.lines.size() < 2 || effects >= kStandIn) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);

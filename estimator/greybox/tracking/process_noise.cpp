@@ -153,13 +153,14 @@ DisturbanceLevel WindowNoise::level(const WindowData& data, const VectorXd& thet
   const double step = 2.0 * std::log(kMostChange) / static_cast<double>(kSizes - 1);
   std::array<double, kSizes> at{};
   std::array<double, kSizes> log_determinant{};
-  std::vector<InnovationGains> gains;
+  std::vector<disturbance::NoiseParameters> sizes(kSizes, noise.noise);
   for (std::size_t i = 0; i < kSizes; ++i) {
     at[i] = -std::log(kMostChange) + step * static_cast<double>(i);
-    disturbance::NoiseParameters one = noise.noise;
-    one.disturbance_sd *= std::exp(at[i]);
-    disturbance::KalmanGains found = disturbance::kalman_gains(model, window, one, floor_m);
-    log_determinant[i] = found.log_determinant;
+    sizes[i].disturbance_sd *= std::exp(at[i]);
+  }
+  std::vector<InnovationGains> gains;
+  for (disturbance::KalmanGains& found : disturbance::kalman_gains(model, window, sizes, floor_m)) {
+    log_determinant[gains.size()] = found.log_determinant;
     gains.push_back(std::move(found.gains));
   }
   ObserverSimulation run(model_, window, parameters_);

@@ -1,0 +1,40 @@
+// Riccati's recursion for eight noise models side by side, one in each lane of a vector.
+//
+//   S = P_yy + R,   K = P c / S,   P <- P - K c' P,   P <- A P A' + Q
+//
+// Each lane does the same operations whatever the others hold and whatever the instruction set, so
+// that a noise model's gains do not depend on its company.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "estimator/greybox/disturbance/linearisation.h"
+
+namespace estimator::greybox::disturbance {
+
+inline constexpr std::size_t kNoiseLanes = 8;
+using LaneValues = std::array<double, kNoiseLanes>;
+
+/// Variances of the noise models, each in the square of its state's unit, and their decays.
+struct LaneNoise {
+  LaneValues decay{};
+  LaneValues disturbance{};  ///< of F, stationary
+  LaneValues walk_m2{};      ///< per sample
+  LaneValues sensor_m2{};
+};
+
+/// Where the results of one noise model go: columns and entries of the whole record.
+struct LaneResult {
+  double* gain = nullptr;   ///< (states + 1) x samples, by columns
+  double* scale = nullptr;  ///< samples
+  double log_determinant = 0.0;
+};
+
+/// Samples [from, to) of a record, `lanes` <= kNoiseLanes noise models, from the covariances
+/// `start`. `valid`: one entry per sample of the record. Adds to the results' determinants.
+void riccati(const Linearisation& model, const char* valid, std::size_t from, std::size_t to,
+             const std::array<StateMatrix, kNoiseLanes>& start, const LaneNoise& noise,
+             double floor_m, std::array<LaneResult, kNoiseLanes>& results, std::size_t lanes);
+
+}  // namespace estimator::greybox::disturbance
