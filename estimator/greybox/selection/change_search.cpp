@@ -182,7 +182,6 @@ bool motion_explains_more(const InnovationStage& stage) {
 /// The changes found from a stage on, and the lines that are seen beside them.
 std::optional<ChangeSearch> searched(ChangeSearch search, InnovationStage stage) {
   const SearchContext plain = search.context;
-  if (motion_explains_more(stage)) return {};
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
   }
@@ -209,6 +208,7 @@ std::optional<ChangeSearch> search_changes(const SearchContext& context, const M
   ChangeSearch search{context, {}, {}};
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
+  if (motion_explains_more(stage)) return {};
   search.innovations.before = stage;
   if (std::optional<ChangeSearch> found = searched(search, stage)) return found;
   // a strong line hides a change, as a drift passes for a slow line
