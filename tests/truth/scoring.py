@@ -101,8 +101,8 @@ LIBRARY_NAMES = {"elastic_shaft": "second_mass"}
 
 
 def score_law(record, verdict, answer, named):
-    """The verdict on a law that the library does not have, or has by another equation under the
-    same name, and where it was looked for."""
+    """The verdict on a law that the library does not have, or has under another name or by another
+    equation, and where it was looked for."""
     left_out = record["left_out"]
     first = (answer.get("where") or [])[:2]
     result = {"where": [f"{where.get('class')}/{where.get('variable')}" for where in first]}

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "estimator/greybox/disturbance/model_ensemble.h"
 #include "estimator/greybox/observer_simulation.h"
-#include "plant_sim/ensemble.h"
 #include "plant_sim/library.h"
 
 namespace estimator::greybox::disturbance {
@@ -52,13 +52,7 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
                         const std::vector<FreeParameter>& parameters,
                         const Eigen::VectorXd& theta) {
   const std::unique_ptr<Ensemble> ensemble =
-      plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto index = ensemble->find(parameters[i].name);
-    if (!index) continue;  // a number of a change, which is linearised about the start
-    const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
-    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(*index, lane, value);
-  }
+      model_ensemble(model, record.sample_time_s, parameters, theta);
   for (const auto& [index, neutral] : ragged_parameters(*ensemble, model)) {
     for (std::size_t lane = kSmooth; lane < Ensemble::kLanes; ++lane) {
       ensemble->set(index, lane, neutral);

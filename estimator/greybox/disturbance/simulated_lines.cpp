@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "estimator/greybox/disturbance/model_ensemble.h"
 #include "estimator/greybox/observer_simulation.h"
-#include "plant_sim/ensemble.h"
 
 namespace estimator::greybox::disturbance {
 namespace {
@@ -53,13 +53,7 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
                                  const std::vector<SpectralLine>& lines,
                                  const std::vector<Eigen::Vector2d>& waves, Correction correction) {
   const std::unique_ptr<Ensemble> ensemble =
-      plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto index = ensemble->find(parameters[i].name);
-    if (!index) continue;  // a number of a change: its parameter keeps the value of the start
-    const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
-    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(*index, lane, value);
-  }
+      model_ensemble(model, record.sample_time_s, parameters, theta);
   const auto load = ensemble->find("load_force.force_N");
   const auto supply = ensemble->find("supply_pressure_Pa");
   const double load_N = load ? ensemble->get(*load, kPlain) : 0.0;

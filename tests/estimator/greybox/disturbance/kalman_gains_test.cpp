@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "estimator/greybox/observer_simulation.h"
 #include "tests/estimator/greybox/disturbance/axis_record.h"
@@ -47,6 +51,95 @@ TEST(KalmanGains, WithoutAnyProcessNoiseTheModelIsTrusted) {
   const KalmanGains found = kalman_gains(model, record, noise, 3e-6);
   EXPECT_LT(found.gains.gain.col(799).cwiseAbs().maxCoeff(), 0.01);
   EXPECT_NEAR(found.gains.scale[799], 1.0, 0.01);
+}
+
+/// The textbook's recursion with Joseph's form of the correction.
+KalmanGains by_joseph(const Linearisation& model, const Dataset& record,
+                      const NoiseParameters& noise, double floor_m, const StateMatrix& start) {
+  const auto count = static_cast<Eigen::Index>(model.states.size());
+  const auto samples = static_cast<Eigen::Index>(record.size());
+  KalmanGains result;
+  result.gains.gain.resize(count + 1, samples);
+  result.gains.scale.resize(samples);
+  const double decay = std::exp(-2.0 * std::numbers::pi * noise.corner_Hz * record.sample_time_s);
+  StateMatrix q = StateMatrix::Zero();
+  q(0, 0) = noise.walk_m * noise.walk_m;
+  q(4, 4) = (1.0 - decay * decay) * noise.disturbance_sd * noise.disturbance_sd;
+  const double r = noise.sensor_m * noise.sensor_m;
+  StateMatrix p = start;
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (std::find(record.starts.begin(), record.starts.end(), row) != record.starts.end()) {
+      p = start;
+    }
+    const double s = p(0, 0) + r;
+    const StateVector gain = p.col(0) / s;
+    result.gains.gain.col(k) << gain.head(count), gain[4];
+    result.gains.scale[k] = floor_m / std::sqrt(s);
+    if (record.valid[row] != 0) result.log_determinant += std::log(s / (floor_m * floor_m));
+    StateMatrix rest = StateMatrix::Identity();
+    rest.col(0) -= gain;
+    StateMatrix a = model.transition[row];
+    a(4, 4) = decay;
+    p = (a * (rest * p * rest.transpose() + r * gain * gain.transpose()) * a.transpose() + q)
+            .eval();
+  }
+  return result;
+}
+
+// More noise models than are filtered side by side, on a record of two segments with gaps.
+TEST(KalmanGains, SeveralNoiseModelsHaveEachTheGainsOfTheTextbooksRecursion) {
+  Dataset record = axis_record(500);
+  record.starts = {0, 203};
+  for (std::size_t k = 77; k < 91; ++k) record.valid[k] = 0;
+  const Linearisation model = linearise(axis(), record, {}, Eigen::VectorXd());
+  std::vector<NoiseParameters> noise;
+  for (int i = 0; i < 11; ++i) {
+    const double factor = std::pow(2.0, i - 5);
+    noise.push_back({.disturbance_sd = 3.0 * factor,
+                     .corner_Hz = 2.0 / factor,
+                     .walk_m = 1e-7 * factor,
+                     .sensor_m = 3e-6 / factor});
+  }
+  const std::vector<KalmanGains> found = kalman_gains(model, record, noise, 3e-6);
+  ASSERT_EQ(found.size(), noise.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    StateMatrix start = StateMatrix::Zero();
+    start(0, 0) = std::pow(noise[i].sensor_m, 2);
+    start(4, 4) = std::pow(noise[i].disturbance_sd, 2);
+    const KalmanGains truth = by_joseph(model, record, noise[i], 3e-6, start);
+    EXPECT_LT((found[i].gains.gain - truth.gains.gain).norm(), 1e-7 * truth.gains.gain.norm());
+    EXPECT_LT((found[i].gains.scale - truth.gains.scale).norm(), 1e-9 * truth.gains.scale.norm());
+    EXPECT_NEAR(found[i].log_determinant, truth.log_determinant, 1e-6);
+    // alone as in company, bit for bit
+    const KalmanGains alone = kalman_gains(model, record, noise[i], 3e-6);
+    EXPECT_EQ(alone.gains.gain, found[i].gains.gain);
+    EXPECT_EQ(alone.log_determinant, found[i].log_determinant);
+  }
+}
+
+// The chambers of an actuator: four states and F. At rest the load pressure begins uncertain by
+// 1 bar.
+TEST(KalmanGains, OfAnActuatorAreThoseOfTheTextbooksRecursionToo) {
+  const plant_sim::ModelFile actuator =
+      plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml");
+  Dataset record = axis_record(400);
+  const Linearisation model = linearise(actuator, record, {}, Eigen::VectorXd());
+  ASSERT_EQ(model.states.size(), 4U);
+  const NoiseParameters noise{
+      .disturbance_sd = 25.0, .corner_Hz = 2.0, .walk_m = 1e-7, .sensor_m = 3e-6};
+  StateMatrix start = StateMatrix::Zero();
+  start(0, 0) = 9e-12;
+  start.block<2, 2>(2, 2) << 1e10, -1e10, -1e10, 1e10;
+  start(4, 4) = 625.0;
+  const KalmanGains found = kalman_gains(model, record, noise, 3e-6);
+  const KalmanGains truth = by_joseph(model, record, noise, 3e-6, start);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    EXPECT_LT((found.gains.gain.row(i) - truth.gains.gain.row(i)).norm(),
+              1e-5 * truth.gains.gain.row(i).norm())
+        << i;
+  }
+  EXPECT_NEAR(found.log_determinant, truth.log_determinant, 1e-5);
 }
 
 // The variance of the weak observer's error, summed here from the impulse responses instead.
