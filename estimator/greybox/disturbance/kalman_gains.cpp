@@ -19,11 +19,15 @@ namespace {
 constexpr double kPressureAtRest_Pa = 1e5;
 constexpr double kPressureMoving_Pa = 1e6;
 
+double fastest_mps(const Linearisation& model) {
+  double fastest = 0.0;
+  for (const double v_mps : model.speed_mps) fastest = std::max(fastest, std::abs(v_mps));
+  return fastest;
+}
+
 StateMatrix start_covariance(const Linearisation& model, const Dataset& record, std::size_t k,
-                             const NoiseParameters& noise) {
+                             const NoiseParameters& noise, double fastest_mps) {
   const bool moving = k < record.initialising.size() && record.initialising[k] != kNotInitialising;
-  double fastest_mps = 0.0;
-  for (const double v_mps : model.speed_mps) fastest_mps = std::max(fastest_mps, std::abs(v_mps));
   const double pressure_Pa = moving ? kPressureMoving_Pa : kPressureAtRest_Pa;
   StateMatrix p = StateMatrix::Zero();
   p(0, 0) = noise.sensor_m * noise.sensor_m;
@@ -59,6 +63,7 @@ std::vector<KalmanGains> kalman_gains(const Linearisation& model, const Dataset&
   const auto samples = static_cast<Eigen::Index>(record.size());
   const auto count = static_cast<Eigen::Index>(model.states.size());
   std::vector<KalmanGains> all(noise.size());
+  const double most_mps = fastest_mps(model);
   for (std::size_t first = 0; first < noise.size(); first += kNoiseLanes) {
     const std::size_t lanes = std::min(kNoiseLanes, noise.size() - first);
     LaneNoise each;
@@ -66,7 +71,7 @@ std::vector<KalmanGains> kalman_gains(const Linearisation& model, const Dataset&
     for (std::size_t lane = 0; lane < kNoiseLanes; ++lane) {
       const NoiseParameters& one = noise[first + std::min(lane, lanes - 1)];
       each.decay[lane] = decay_of(one, record.sample_time_s);
-      each.disturbance[lane] = one.disturbance_sd * one.disturbance_sd;
+      each.disturbance_variance[lane] = one.disturbance_sd * one.disturbance_sd;
       each.walk_m2[lane] = one.walk_m * one.walk_m;
       each.sensor_m2[lane] = one.sensor_m * one.sensor_m;
     }
@@ -84,9 +89,9 @@ std::vector<KalmanGains> kalman_gains(const Linearisation& model, const Dataset&
     for (std::size_t segment = 0; segment <= record.starts.size(); ++segment) {
       const bool last = segment == record.starts.size();
       const std::size_t to = last ? record.size() : record.starts[segment];
-      riccati(model, record.valid.data(), from, to, start, each, floor_m, results, lanes);
-      for (std::size_t lane = 0; lane < kNoiseLanes && !last; ++lane) {
-        start[lane] = start_covariance(model, record, to, noise[first + std::min(lane, lanes - 1)]);
+      riccati({&model, record.valid.data(), from, to, floor_m}, start, each, results, lanes);
+      for (std::size_t lane = 0; lane < lanes && !last; ++lane) {
+        start[lane] = start_covariance(model, record, to, noise[first + lane], most_mps);
       }
       from = to;
     }

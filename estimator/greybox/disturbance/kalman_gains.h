@@ -27,7 +27,8 @@ struct KalmanGains {
   double log_determinant = 0.0;  ///< sum over valid samples of log(S / floor_m^2)
 };
 
-/// One for each noise model. `floor_m` > 0 is the unit in which scaled innovations count.
+/// Gains for each noise model, in its order; those of one do not depend on the others. `floor_m` >
+/// 0 is the unit in which scaled innovations count.
 [[nodiscard]] std::vector<KalmanGains> kalman_gains(const Linearisation& model,
                                                     const Dataset& record,
                                                     std::span<const NoiseParameters> noise,

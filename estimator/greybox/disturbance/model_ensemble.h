@@ -12,8 +12,8 @@
 
 namespace estimator::greybox::disturbance {
 
-/// Steps as a simulation of a record with `sample_time_s` does. The numbers of a change have no
-/// place in an ensemble: its parameter keeps the value that it has at the start.
+/// The ensemble's step is that of a simulation of a record with `sample_time_s`. The numbers of a
+/// change are ignored: its parameter keeps the value that it has at the start.
 [[nodiscard]] std::unique_ptr<plant_sim::Ensemble> model_ensemble(
     const plant_sim::ModelFile& model, double sample_time_s,
     const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta);

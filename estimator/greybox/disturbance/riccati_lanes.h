@@ -10,17 +10,18 @@
 #include <cstddef>
 
 #include "estimator/greybox/disturbance/linearisation.h"
+#include "plant_sim/ensemble.h"
 
 namespace estimator::greybox::disturbance {
 
 inline constexpr std::size_t kNoiseLanes = 8;
 using LaneValues = std::array<double, kNoiseLanes>;
 
-/// Variances of the noise models, each in the square of its state's unit, and their decays.
+/// Variances of the noise models and their decays.
 struct LaneNoise {
   LaneValues decay{};
-  LaneValues disturbance{};  ///< of F, stationary
-  LaneValues walk_m2{};      ///< per sample
+  LaneValues disturbance_variance{};  ///< of F, stationary: N^2 or (m/s)^2
+  LaneValues walk_m2{};               ///< per sample
   LaneValues sensor_m2{};
 };
 
@@ -31,10 +32,18 @@ struct LaneResult {
   double log_determinant = 0.0;
 };
 
-/// Samples [from, to) of a record, `lanes` <= kNoiseLanes noise models, from the covariances
-/// `start`. `valid`: one entry per sample of the record. Adds to the results' determinants.
-void riccati(const Linearisation& model, const char* valid, std::size_t from, std::size_t to,
-             const std::array<StateMatrix, kNoiseLanes>& start, const LaneNoise& noise,
-             double floor_m, std::array<LaneResult, kNoiseLanes>& results, std::size_t lanes);
+/// Samples [from, to) of a record.
+struct LaneRange {
+  const Linearisation* model;
+  const char* valid;  ///< one entry per sample of the record
+  std::size_t from, to;
+  double floor_m;
+};
+
+/// The first `lanes` <= kNoiseLanes noise models over a range, from the covariances `start`. Adds
+/// to the results' determinants. The set must run here.
+void riccati(const LaneRange& range, const std::array<StateMatrix, kNoiseLanes>& start,
+             const LaneNoise& noise, std::array<LaneResult, kNoiseLanes>& results,
+             std::size_t lanes, plant_sim::InstructionSet set = plant_sim::fastest_here());
 
 }  // namespace estimator::greybox::disturbance

@@ -179,13 +179,10 @@ bool motion_explains_more(const InnovationStage& stage) {
   return false;
 }
 
-/// The changes found from a stage on, and the lines that are seen beside them.
-std::optional<ChangeSearch> searched(ChangeSearch search, InnovationStage stage) {
-  const SearchContext plain = search.context;
-  std::vector<ChangeScore> taken;
-  while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
-  }
-  if (search.changes.empty() || plain.cancelled()) return {};
+/// The search with the changes of a stage described, the lines that are seen beside them, and what
+/// remains.
+ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
+                       const std::vector<ChangeScore>& taken) {
   add_lines(search.context, search.innovations, stage);
   const FitSummary& fitted = stage.model.fitted;
   const FitDataset& data = stage.context.problem.data;
@@ -197,8 +194,24 @@ std::optional<ChangeSearch> searched(ChangeSearch search, InnovationStage stage)
   }
   search.innovations.final = std::move(stage);
   weigh_remainder(search.context, search.innovations);
-  if (search.innovations.physics_missing()) return {};
   return search;
+}
+
+/// The changes found from a stage on. A second one has to be worth it beside the lines that the
+/// first one leaves.
+std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage stage) {
+  const SearchContext plain = search.context;
+  std::optional<ChangeSearch> best;
+  std::vector<ChangeScore> taken;
+  while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
+    ChangeSearch found = concluded(search, stage, taken);
+    const auto cost = [](const ChangeSearch& one) { return penalised(one.innovations.final); };
+    const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
+    if (best && !(cost(found) < cost(*best) - 2.0 * enough_nats)) break;
+    best = std::move(found);
+  }
+  if (!best || plain.cancelled() || best->innovations.physics_missing()) return {};
+  return best;
 }
 
 }  // namespace
@@ -210,11 +223,12 @@ std::optional<ChangeSearch> search_changes(const SearchContext& context, const M
   if (!std::isfinite(stage.minus_two_log)) return {};
   if (motion_explains_more(stage)) return {};
   search.innovations.before = stage;
-  if (std::optional<ChangeSearch> found = searched(search, stage)) return found;
-  // a strong line hides a change, as a drift passes for a slow line
+  if (std::optional<ChangeSearch> found = changes_from(search, stage)) return found;
+  // a drift passes for a slow line, so that changes are sought without lines first; a strong line
+  // hides a change, so that they are sought again behind lines
   add_lines(context, search.innovations, stage);
   if (stage.noise.lines.empty()) return {};
-  return searched(std::move(search), std::move(stage));
+  return changes_from(std::move(search), std::move(stage));
 }
 
 }  // namespace estimator::greybox::selection

@@ -31,8 +31,9 @@ constexpr double kInexactLines = 0.0005;
 /// Lead of the likeliest candidate that another may make up for when its noise model and parameters
 /// have converged together.
 constexpr double kContends_nats = 30.0;
-/// Lag of another search's model in -2 log L after one turn that further turns do not make up for.
-constexpr double kOutOfReach = 400.0;
+/// Lag of another search's model after one turn of noise model and parameters that further turns,
+/// which gain some tens, do not make up for.
+constexpr double kOutOfReach_nats = 200.0;
 /// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
 /// one.
 constexpr double kOnALine = 0.05;
@@ -101,13 +102,16 @@ void drop_out_of_range(const SearchContext& plain, InnovationStage& stage,
   }
 }
 
+enum class Candidates { effects_and_lines, lines };
+
 /// One round: false when nothing gains enough. `evidence_nats`: what a candidate must gain.
 /// `dropped`: effects that are no candidates any more.
 bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBranch& held,
-            double evidence_nats, std::vector<InnovationRound>& rounds,
+            Candidates candidates, double evidence_nats, std::vector<InnovationRound>& rounds,
             std::vector<std::string>& dropped) {
   std::vector<InnovationTrial> trials;
-  if (!plain.problem.candidate_effects.empty() && stage.model.added.size() < kMostEffects) {
+  const bool effects_too = candidates == Candidates::effects_and_lines;
+  if (effects_too && stage.model.added.size() < kMostEffects) {
     trials = effect_trials(stage);
     add_simulated_starts(stage, simulated_effects(plain, stage, held), trials);
     std::erase_if(trials, [&](const InnovationTrial& trial) {
@@ -198,6 +202,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
   rounds.push_back(std::move(round));
   if (chosen == none) return false;
   stage = std::move(stages[chosen]);
+  if (!effects_too) return true;
   drop_out_of_range(plain, stage, dropped);
   if (!trials[chosen].candidate.effect.empty()) reconsider_sites(plain, stage);
   return true;
@@ -209,8 +214,9 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   if (held.added.empty() || context.cancelled()) return;
   const SimulationWidth width = wide(context.options.threads);
   InnovationStage other = settled(context, held, stage.noise, 1, width);
-  if (!(penalised(other) < penalised(stage) + kOutOfReach)) return;
-  other = settled(context, other.model, other.noise, kMostTurns, width);
+  if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return;
+  InnovationStage turned = settled(context, other.model, other.noise, kMostTurns, width);
+  if (turned.minus_two_log < other.minus_two_log) other = std::move(turned);
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   if (!effect_out_of_range(other).empty()) return;
   InnovationCandidate candidate;
@@ -221,7 +227,7 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   candidate.fitted = other.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
   rounds.push_back({stage.model, {std::move(candidate)}, true});
-  stage = other;
+  stage = std::move(other);
 }
 
 /// The final stage without effect `i`.
@@ -232,11 +238,18 @@ InnovationStage stage_without(const SearchContext& context, const InnovationSear
   return without(context, final, final.model.added[i]);
 }
 
+double largest_curve_nats(const InnovationStage& stage) {
+  const std::vector<CurveGain> curves = curve_gains(stage);
+  return curves.empty() ? 0.0 : curves.front().gain_nats;
+}
+
 /// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
 /// and other effects were not known may have stood for these and another effect together.
 bool exchange(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
   const std::size_t effects = stage.model.added.size();
-  if (effects + stage.noise.lines.size() < 2 || effects >= kStandIn) return false;
+  if (effects + stage.noise.lines.size() < 2) return false;
+  // so many that leave physics unexplained stand in for a law, whichever they are
+  if (effects >= kStandIn && largest_curve_nats(stage) > kCurve_nats) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);
@@ -329,8 +342,8 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::vector<std::string> dropped;
   const auto extend_fully = [&] {
-    while (!context.cancelled() &&
-           extend(context, stage, held, evidence_nats(), search.rounds, dropped)) {
+    while (!context.cancelled() && extend(context, stage, held, Candidates::effects_and_lines,
+                                          evidence_nats(), search.rounds, dropped)) {
     }
   };
   extend_fully();
@@ -347,13 +360,13 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   return search;
 }
 
-void add_lines(SearchContext context, InnovationSearch& search, InnovationStage& stage) {
-  context.problem.candidate_effects.clear();
-  std::vector<std::string> dropped;
+void add_lines(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
+  std::vector<std::string> none;
   while (!context.cancelled() &&
-         extend(context, stage, {}, kEvidence_nats + inexact_nats(context, search, stage),
-                search.rounds, dropped)) {
+         extend(context, stage, {}, Candidates::lines,
+                kEvidence_nats + inexact_nats(context, search, stage), search.rounds, none)) {
   }
+  search.inexact_nats = inexact_nats(context, search, stage);
 }
 
 disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
@@ -372,9 +385,7 @@ disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
 }
 
 void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
-  const std::vector<CurveGain> curves =
-      context.cancelled() ? std::vector<CurveGain>() : curve_gains(search.final);
-  search.curve_nats = curves.empty() ? 0.0 : curves.front().gain_nats;
+  search.curve_nats = context.cancelled() ? 0.0 : largest_curve_nats(search.final);
   search.jump = likeliest_jump(search.final);
   // a reading that leaps, or that stays where its range ends, asks for any force
   const RigScale rig = rig_scale(context.problem.model, context.problem.data);
@@ -383,13 +394,13 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
     search.jump = {};
 }
 
-std::vector<InnovationStage> replacements(const SearchContext& with_holdouts,
+std::vector<InnovationStage> exchanges_of(const SearchContext& with_holdouts,
                                           const InnovationSearch& search, std::size_t i) {
+  if (with_holdouts.problem.candidate_effects.empty()) return {};
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationStage without = stage_without(context, search, search.final, i);
-  FitDataset data = std::move(without.context.problem.data);
-  without.context = context;
-  without.context.problem.data = std::move(data);
+  without.context.problem.model = context.problem.model;
+  without.context.problem.candidate_effects = context.problem.candidate_effects;
   return exchanges(context, search.final, search.final.model.added[i], without);
 }
 
@@ -408,7 +419,7 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& context,
     InnovationRivals group =
         known != search.rivals.end()
             ? known->second
-            : rivals_among(search.final, added[i], replacements(context, search, i));
+            : rivals_among(search.final, added[i], exchanges_of(context, search, i));
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

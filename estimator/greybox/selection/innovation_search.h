@@ -10,7 +10,8 @@
 // Effects of the library and spectral lines compete in one ladder; a candidate must gain kEvidence
 // more than kPerParameter for each of its parameters. Fits use every sample: white innovations make
 // that valid. An effect chosen while others and lines were not known is held against the other
-// effects again at the end, and exchanged where one is likelier. Source for the penalty: G.
+// effects again at the end, and exchanged where one is likelier; three or more that leave physics
+// unexplained stand in for a law and are not. Source for the penalty: G.
 // Schwarz, Annals of Statistics 6 (1978) 461.
 #pragma once
 
@@ -71,8 +72,9 @@ struct InnovationSearch {
                                                   const ModelStage& first,
                                                   const SearchBranch& held);
 
-/// Adds spectral lines to the stage that a search has reached, and their rounds to the search.
-void add_lines(SearchContext context, InnovationSearch& search, InnovationStage& stage);
+/// Adds spectral lines to the stage that a search has reached; its effects stay. Sets the search's
+/// rounds and inexact_nats; `search.before` is the stage from which gains count.
+void add_lines(const SearchContext& context, InnovationSearch& search, InnovationStage& stage);
 
 /// The likeliest load that sets in at one sample.
 [[nodiscard]] disturbance::ForceJump likeliest_jump(const InnovationStage& stage);
@@ -80,8 +82,8 @@ void add_lines(SearchContext context, InnovationSearch& search, InnovationStage&
 /// Sets what the final model leaves: the gain of curves over the motion, and the likeliest jump.
 void weigh_remainder(const SearchContext& context, InnovationSearch& search);
 
-/// The final model with other effects of `context` in the place of its i-th effect, as exchanges().
-[[nodiscard]] std::vector<InnovationStage> replacements(const SearchContext& context,
+/// exchanges() of the i-th effect of the final model with the candidates of `context`.
+[[nodiscard]] std::vector<InnovationStage> exchanges_of(const SearchContext& context,
                                                         const InnovationSearch& search,
                                                         std::size_t i);
 

@@ -31,14 +31,14 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site) 
 
 }  // namespace
 
-bool law_displaces(const SearchContext& context, const std::string& site,
-                   const InnovationSearch& named) {
+bool law_competes(const SearchContext& context, const std::string& site,
+                  const InnovationSearch& named) {
   const std::vector<Law> dictionary = laws_at(context, site);
   if (dictionary.empty() || context.cancelled()) return false;
   const std::vector<InnovationStage> others =
-      replacements(with_laws(context, dictionary, {}), named, 0);
+      exchanges_of(with_laws(context, dictionary, {}), named, 0);
   return std::any_of(others.begin(), others.end(), [&](const InnovationStage& other) {
-    return penalised(other) < penalised(named.final) - 2.0 * kRivals_nats;
+    return penalised(other) < penalised(named.final) + 2.0 * kRivals_nats;
   });
 }
 

@@ -18,10 +18,10 @@ struct LawSearch {
   std::vector<Law> laws;  ///< those among the final model's effects, in the order added
 };
 
-/// True where a law of the site in the place of the only effect found makes a record clearly
-/// likelier.
-[[nodiscard]] bool law_displaces(const SearchContext& context, const std::string& site,
-                                 const InnovationSearch& named);
+/// True where a law of the site explains the record about as well as the effect in whose place it
+/// is, or better. `named` has found one effect.
+[[nodiscard]] bool law_competes(const SearchContext& context, const std::string& site,
+                                const InnovationSearch& named);
 
 /// None where one or two laws leave physics unexplained, or none is of use. `first`: the model as
 /// given, fitted with the weak observer. `site`: where laws are looked for; empty: everywhere.

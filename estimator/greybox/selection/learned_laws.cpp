@@ -107,8 +107,9 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
                                                strains_the_plant(named.model.fitted, first.fitted));
   const std::string site = everywhere ? "" : shared_site(added);
   if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
+  // a search is worth it only where one law competes with the effect
+  if (added.size() == 1 && !law_competes(context, site, innovations)) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked
-  if (added.size() == 1 && !law_displaces(context, site, innovations)) return false;
   const std::optional<LawSearch> found =
       search_laws(context, first, site, added.size() > 1 ? added : std::vector<std::string>());
   return found && found->innovations.final.model.added.size() <= added.size() &&

@@ -111,7 +111,7 @@ void drop_idle_refinements(FitSummary& fitted) {
   using Eigen::Index;
   const auto count = static_cast<Index>(fitted.parameters.size());
   if (fitted.jacobian.cols() != count) return;
-  const auto is_without_influence = [&](Index i) {
+  const auto is_idle_parameter = [&](Index i) {
     return fitted.theta[i] == 0.0 || fitted.jacobian.col(i).cwiseAbs().maxCoeff() == 0.0;
   };
   std::vector<Index> kept;
@@ -121,7 +121,7 @@ void drop_idle_refinements(FitSummary& fitted) {
     for (Index k = 0; idle && k < count; ++k) {
       const FreeParameter& other = fitted.parameters[static_cast<std::size_t>(k)];
       const bool together = other.refinement == p.refinement && effect_of(other) == effect_of(p);
-      idle = !together || is_without_influence(k);
+      idle = !together || is_idle_parameter(k);
     }
     if (!idle) kept.push_back(i);
   }

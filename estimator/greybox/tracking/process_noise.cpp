@@ -158,10 +158,12 @@ DisturbanceLevel WindowNoise::level(const WindowData& data, const VectorXd& thet
     at[i] = -std::log(kMostChange) + step * static_cast<double>(i);
     sizes[i].disturbance_sd *= std::exp(at[i]);
   }
-  std::vector<InnovationGains> gains;
-  for (disturbance::KalmanGains& found : disturbance::kalman_gains(model, window, sizes, floor_m)) {
-    log_determinant[gains.size()] = found.log_determinant;
-    gains.push_back(std::move(found.gains));
+  std::vector<disturbance::KalmanGains> found =
+      disturbance::kalman_gains(model, window, sizes, floor_m);
+  std::vector<InnovationGains> gains(kSizes);
+  for (std::size_t i = 0; i < kSizes; ++i) {
+    log_determinant[i] = found[i].log_determinant;
+    gains[i] = std::move(found[i].gains);
   }
   ObserverSimulation run(model_, window, parameters_);
   MatrixXd innovations;

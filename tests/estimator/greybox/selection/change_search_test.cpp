@@ -174,6 +174,20 @@ TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
   EXPECT_EQ(lines.front().site, disturbance::LineSite::sensor);
 }
 
+// The offset is a candidate behind lines as well as without them.
+TEST(Changes, ANullThatStepsIsFoundBesideAStrongLine) {
+  const SearchContext context = context_of(
+      "motion=multisine,length_s=20,at9:null_bias.offset_V=0.05,"
+      "outside.shake_m=6e-5,outside.shake_Hz=37.411");
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  EXPECT_EQ(found->changes.front().parameter, "null_bias.offset_V");
+  EXPECT_NEAR(found->changes.front().at_s, 9.0, 0.05);
+  EXPECT_NEAR(found->changes.front().to - found->changes.front().from, 0.05, 0.005);
+  EXPECT_THAT(found->innovations.final.noise.lines, SizeIs(1));
+}
+
 TEST(Changes, ANullThatDriftsIsNoMotionThatOtherParametersFollow) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=30,left_out=null_drift,left_out.size=0.06,outside.force_N=20");
