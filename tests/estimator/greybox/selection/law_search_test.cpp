@@ -5,6 +5,7 @@
 
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -64,6 +65,38 @@ TEST(Laws, AGainThatCurvesIsLearnedWithItsSize) {
   const double full_mps = std::stod(formula.substr(formula.find("/ ") + 2));
   EXPECT_NEAR(gain, kServoGain, 1e-3 * kServoGain);
   EXPECT_NEAR(curvature * std::pow(2.0 * gain / full_mps, 2), -0.1, 0.003);
+}
+
+/// A search of the actuator's record that knows one effect of the library alone.
+struct OneEffect {
+  SearchContext context;
+  InnovationSearch found;
+};
+OneEffect searched_with(const std::string& effect, const std::string& spec) {
+  OneEffect result{diagnose_test::context_of(spec, 31), {}};
+  SearchContext only = result.context;
+  std::erase_if(only.problem.candidate_effects,
+                [&](const plant_sim::EffectInfo& one) { return one.name != effect; });
+  result.found = search_innovations(only, first_stage(only), {});
+  return result;
+}
+
+TEST(Laws, ALawCompetesWithTheEffectThatPassesForIt) {
+  const OneEffect cubic =
+      searched_with("quadratic_damping",
+                    "motion=multisine,length_s=15,left_out=cubic_damping,outside.force_N=10");
+  ASSERT_THAT(cubic.found.final.model.added, ElementsAre("quadratic_damping"));
+  EXPECT_TRUE(law_competes(cubic.context, "force", cubic.found));
+}
+
+TEST(Laws, NoLawCompetesWithTheRightEffect) {
+  const OneEffect quadratic =
+      searched_with("quadratic_damping",
+                    "motion=multisine,length_s=15,quadratic_damping.coefficient_N_s2_per_m2=18000,"
+                    "outside.force_N=10");
+  ASSERT_THAT(quadratic.found.final.model.added, ElementsAre("quadratic_damping"));
+  EXPECT_FALSE(law_competes(quadratic.context, "force", quadratic.found));
+  EXPECT_FALSE(law_competes(quadratic.context, "sensor", quadratic.found));
 }
 
 TEST(Laws, AHealthyRecordTeachesNone) {
