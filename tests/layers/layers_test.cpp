@@ -114,7 +114,7 @@ const std::vector<Layer> kLayers{
      {}},
     {"workbench/fit",
      {"config", "plant_sim", "estimator", "estimator/nonlinear", "estimator/greybox",
-      "workbench/files", "workbench/present"},
+      "estimator/greybox/selection", "workbench/files", "workbench/present"},
      {"nlohmann", "Eigen"}},
     {"workbench/model",
      {"config", "plant_sim", "estimator/greybox", "workbench/present", "workbench/questions"},

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kCoarseSteps = 100;
 constexpr double kDrift_per_s = 2.0;
+/// Ratio of an effect without which the rod does not stay within its stroke.
+constexpr double kLeavesStroke_ratio = 1e6;
 constexpr double kNudge = 0.01;  ///< relative change for the sensitivities
 
 using Column = std::vector<double>;
@@ -80,7 +82,7 @@ double visibility_ratio(const Case& lacking, const Record& record) {
   }
   const Column rest = left_after(without_drift(record.reading_m, base, sample_s), columns, bounds);
   const double left_m = std::sqrt(dot(rest, rest) / static_cast<double>(rest.size()));
-  return std::hypot(1.0, left_m / record.floor_m);
+  return std::isfinite(left_m) ? std::hypot(1.0, left_m / record.floor_m) : kLeavesStroke_ratio;
 }
 
 }  // namespace truth

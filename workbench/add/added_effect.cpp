@@ -74,7 +74,9 @@ Assignment parse_assignment(const std::string& text) {
   const char* end = number.data() + number.size();
   const auto [rest, failed] = std::from_chars(number.data(), end, value);
   if (failed != std::errc() || rest != end) {
-    throw config::schema::UsageError(text + ": is no assignment; allowed: parameter=number");
+    throw config::schema::UsageError(
+        text + (equals == std::string::npos ? ": lacks an equals sign" : ": has no number in it") +
+        "; allowed: parameter=number, the number in the parameter's unit without the unit");
   }
   return {text.substr(0, equals), value};
 }

@@ -1,5 +1,7 @@
 #include "workbench/compare/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +25,9 @@ greybox::Dataset part_between(const greybox::Dataset& whole, double from_s, doub
   const std::size_t to = index(to_s);
   const double least_s = 2.0;
   if (from >= to || static_cast<double>(to - from) * whole.sample_time_s < least_s) {
-    throw UsageError("--from, --to: leave less than 2 s of " + whole.name);
+    throw UsageError(
+        fmt::format("--from, --to: leave less than 2 s of {}, which is from {:.6g} to {:.6g} s",
+                    whole.name, whole.t_s.front(), whole.t_s.back()));
   }
   greybox::Dataset part = greybox::part(whole, from, to);
   part.notes = whole.notes;

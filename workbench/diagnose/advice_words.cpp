@@ -195,10 +195,8 @@ std::string words_for_unexplained(const std::vector<selection::Localisation>& wh
                  : "the chamber pressures and the spool position.");
   }
   const selection::Localisation& first = where.front();
-  std::string text = std::string("The remaining error goes ") + of(kVariables, first.variable) +
-                     " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + " (" +
-                     number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
-                     " % of the held-out squared error): ";
+  std::string text = std::string("For an error that goes ") + of(kVariables, first.variable) +
+                     " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + ": ";
   const auto& drift = axis ? kAxisDrift : kDrift;
   const auto& record = axis ? kAxisRecord : kRecord;
   text += of(first.variable == "time" ? drift : record, first.site);

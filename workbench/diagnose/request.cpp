@@ -10,6 +10,7 @@
 #include "config/record/record.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
@@ -72,10 +73,13 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
       const auto named = [&, known = plant_sim::library_name(name)](
                              const plant_sim::EffectInfo& effect) { return effect.name == known; };
       if (std::any_of(effects.begin(), effects.end(), named)) continue;
-      const auto text = [](const plant_sim::EffectInfo& effect) { return effect.name; };
-      throw config::schema::UsageError(
-          fmt::format("{}: {} is no effect that this model lacks; allowed: {}", option, name,
-                      config::schema::joined_by(effects, text, ", ")));
+      std::vector<std::string> lacking;
+      for (const plant_sim::EffectInfo& effect : effects) lacking.push_back(effect.name);
+      const std::string near = config::schema::nearest(name, lacking);
+      throw config::schema::UsageError(fmt::format(
+          "{}: '{}' is not among the effects that can be added to this model{}; allowed: {}",
+          option, name, near.empty() ? "" : ", did you mean " + near + "?",
+          config::schema::joined(lacking)));
     }
   }
   std::erase_if(effects, [&](const plant_sim::EffectInfo& effect) {

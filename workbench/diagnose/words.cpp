@@ -151,9 +151,8 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
     out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
   }
   for (const auto& group : d.same_here) {
-    out.push_back("On this plant " + config::schema::listed(group) +
-                  " are equivalent for every motion: the name is a choice, the better model the "
-                  "same.");
+    out.push_back("On this plant no motion that was tried tells " + config::schema::listed(group) +
+                  " apart: the name is a choice.");
   }
 }
 

@@ -11,6 +11,7 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "estimator/greybox/parameter_catalogue.h"
+#include "estimator/greybox/selection/typical_sizes.h"
 
 namespace workbench::fit {
 namespace {
@@ -29,6 +30,21 @@ using greybox::widen_to_full_range;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::string shown(double value) { return fmt::format("{:.6g}", value); }
+
+/// The effects that a model has without a value, as `add` leaves them.
+std::vector<plant_sim::EffectInfo> neutral_effects(const plant_sim::ModelFile& model) {
+  const std::vector<FreeParameter> valued = greybox::present_parameters(model);
+  std::vector<plant_sim::EffectInfo> found = plant_sim::effects_of(model);
+  std::erase_if(found, [&](const plant_sim::EffectInfo& info) {
+    const bool present =
+        std::any_of(model.effects.begin(), model.effects.end(),
+                    [&](const auto& effect) { return effect.present && effect.name == info.name; });
+    return !present || std::any_of(valued.begin(), valued.end(), [&](const FreeParameter& p) {
+      return p.name.starts_with(info.name + ".");
+    });
+  });
+  return found;
+}
 
 class ParameterSelector {
  public:
@@ -70,6 +86,9 @@ class ParameterSelector {
     if (selection_.free.empty()) {
       std::vector<FreeParameter> usual = greybox::plant_parameters(model_);
       for (const auto& p : greybox::present_parameters(model_)) usual.push_back(p);
+      for (const plant_sim::EffectInfo& effect : neutral_effects(model_)) {
+        for (const auto& p : greybox::effect_parameters(effect, 0)) usual.push_back(p);
+      }
       for (const FreeParameter& p : usual) {
         for (const std::size_t i : find("--free", p.name)) add(i);
       }
@@ -185,6 +204,22 @@ double number_in(std::string_view text) {
 FreeParameters select_parameters(const plant_sim::ModelFile& model,
                                  const ParameterSelection& selection) {
   return ParameterSelector(model, selection).run();
+}
+
+void start_neutral_effects(const plant_sim::ModelFile& model, const greybox::FitDataset& data,
+                           FreeParameters& choice) {
+  std::vector<plant_sim::EffectInfo> effects = neutral_effects(model);
+  greybox::selection::scale_typical_sizes(model, data, effects);
+  for (const plant_sim::EffectInfo& effect : effects) {
+    for (const plant_sim::ParameterInfo& info : effect.parameters) {
+      for (std::size_t i = 0; i < choice.parameters.size(); ++i) {
+        const FreeParameter& p = choice.parameters[i];
+        if (p.name != effect.name + "." + info.name) continue;
+        choice.start[static_cast<Eigen::Index>(i)] =
+            std::clamp(p.to_theta(info.typical), p.lower, p.upper);
+      }
+    }
+  }
 }
 
 }  // namespace workbench::fit

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/free_parameter.h"
 #include "plant_sim/model_file.h"
 
@@ -33,6 +34,11 @@ struct FreeParameters {
 /// unknown parameter or a value that it cannot have.
 [[nodiscard]] FreeParameters select_parameters(const plant_sim::ModelFile& model,
                                                const ParameterSelection& selection);
+
+/// Starts effects that the model has without a value from sizes that are typical of the rig and the
+/// records: at zero, most have no slope.
+void start_neutral_effects(const plant_sim::ModelFile& model, const greybox::FitDataset& data,
+                           FreeParameters& choice);
 
 /// A finite number and nothing else; NaN otherwise.
 [[nodiscard]] double number_in(std::string_view text);

@@ -146,9 +146,8 @@ PreparedFit prepare(const FitRequest& request) {
   greybox::EstimationOptions& options = out.options;
   problem.model = plant_sim::load_model(request.model, request.assignments);
   const present::PrintedAxis axis(present::motion_of(problem.model));
-  const FreeParameters choice = select_parameters(problem.model, request.selection);
+  FreeParameters choice = select_parameters(problem.model, request.selection);
   problem.parameters = choice.parameters;
-  problem.start = choice.start;
   choose_profiles(request, problem, options);
   std::vector<config::record::RecordUnits> units;
   std::vector<Dataset> records = read(request.records, request, units);
@@ -158,6 +157,8 @@ PreparedFit prepare(const FitRequest& request) {
       request.fit == "all" ? greybox::Split::blocks : greybox::parse_split(request.fit);
   problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);
   require_motion(problem.data);
+  start_neutral_effects(problem.model, problem.data, choice);
+  problem.start = choice.start;
   for (Dataset& record : problem.data.records) {
     present::note_changes(problem.model, record);
     for (const std::string& note : present::notes_of(record))

@@ -1,5 +1,5 @@
-// A model at given parameters in all lanes of an ensemble, for runs that differ between the lanes in
-// something else.
+// A model at given parameters in all lanes of an ensemble, for runs that differ between the lanes
+// in something else.
 #pragma once
 
 #include <Eigen/Core>

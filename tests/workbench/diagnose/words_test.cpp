@@ -133,7 +133,7 @@ TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
   EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("On this plant friction and my_formula are equivalent")));
+              Contains(HasSubstr("no motion that was tried tells friction and my_formula apart")));
 }
 
 }  // namespace

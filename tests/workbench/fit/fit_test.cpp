@@ -70,6 +70,18 @@ class FitTest : public testing::Test {
   fs::path folder_;
 };
 
+// By hand: `add` an effect without a value, then `fit`.
+TEST_F(FitTest, FitsAnEffectThatWasAddedWithoutAValue) {
+  truth::write_csv(truth::simulate(truth::parse_case(
+                       "motion=multisine,length_s=10,null_bias.offset_V=-0.07", 7)),
+                   path("biased.csv"));
+  std::ofstream(path("neutral.toml"))
+      << text_of(kModels + "thesis.toml") << "\n[effects.null_bias]\n";
+  fit({path("neutral.toml"), path("biased.csv"), "-o", path("fitted.toml")});
+  plant_sim::ModelFile fitted = plant_sim::load_model(path("fitted.toml"));
+  EXPECT_NEAR(*fitted.value("null_bias.offset_V"), -0.07, 1e-3);
+}
+
 TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   const std::string said =
       fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
