@@ -41,6 +41,7 @@ std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
   config::record::require_same_units(units);
   fit::cut_ignored(request.ignored, files, records);
   std::vector<greybox::Dataset> sets;
+  sets.reserve(records.size());
   for (const config::record::Record& record : records) {
     sets.push_back(greybox::dataset_of(record));
   }
@@ -74,6 +75,7 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
                              const plant_sim::EffectInfo& effect) { return effect.name == known; };
       if (std::any_of(effects.begin(), effects.end(), named)) continue;
       std::vector<std::string> lacking;
+      lacking.reserve(effects.size());
       for (const plant_sim::EffectInfo& effect : effects) lacking.push_back(effect.name);
       const std::string near = config::schema::nearest(name, lacking);
       throw config::schema::UsageError(fmt::format(
