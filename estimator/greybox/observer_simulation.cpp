@@ -19,7 +19,10 @@ ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const 
       observer_per_s_(observer_per_s),
       ensemble_(plant_sim::make_ensemble(model, step_for(model, record.sample_time_s))),
       schedule_(model, *ensemble_),
-      speed_mps_(record.size(), 0.0) {
+      position_(ensemble_->find_state("y_m").value()),
+      speed_mps_(record.size(), 0.0),
+      predicted_{std::vector<double>(record.size()), std::vector<double>(record.size()),
+                 std::vector<double>(record.size())} {
   for (const FreeParameter& parameter : parameters_) {
     const auto index = ensemble_->find(parameter.name);
     const auto number = index ? std::nullopt : schedule_.find(parameter.name);
@@ -117,6 +120,8 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     }
     const Ensemble::Values reading_m = ensemble_->reading_m();
     speed_mps_[row] = ensemble_->speed_mps()[0];
+    predicted_.rod_m[row] = ensemble_->state(position_)[0];
+    predicted_.reading_m[row] = reading_m[0];
     Ensemble::Values error_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
       error_m[lane] = record.y_m[row] - line_m(lane, k) - reading_m[lane];
@@ -132,6 +137,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
       }
       ensemble_->set_state(states[i], values);
     }
+    predicted_.correction_m[row] = ensemble_->state(position_)[0] - predicted_.rod_m[row];
     Ensemble::Values moved_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
       disturbance[lane] += gains[lane]->gain(disturbed, k) * error_m[lane];
@@ -201,6 +207,9 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
       residuals_m(k, lane) = counts * (record.y_m[row] - reading_m[static_cast<std::size_t>(lane)]);
     }
     speed_mps_[row] = ensemble_->speed_mps()[0];
+    predicted_.rod_m[row] = ensemble_->state(position_)[0];
+    predicted_.reading_m[row] = reading_m[0];
+    predicted_.correction_m[row] = by_m[0];
     if (chambers != nullptr) {
       const plant_sim::PressuresOf<Ensemble::Values> model = ensemble_->pressures();
       for (Eigen::Index lane = 0; lane < kLanes; ++lane) {

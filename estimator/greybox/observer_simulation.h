@@ -63,6 +63,14 @@ class ObserverSimulation {
 
   /// Modelled speed of lane 0 in the latest run, one per sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
+  /// Lane 0 in the latest run: rod and reading as predicted, and by how much the prediction was
+  /// then corrected.
+  struct Predicted {
+    std::vector<double> rod_m;
+    std::vector<double> reading_m;
+    std::vector<double> correction_m;
+  };
+  [[nodiscard]] const Predicted& predicted() const { return predicted_; }
 
  private:
   void take(const Eigen::MatrixXd& points);
@@ -83,7 +91,9 @@ class ObserverSimulation {
     bool of_change = false;
   };
   std::vector<Slot> slots_;
+  std::size_t position_;  ///< state of the ensemble
   std::vector<double> speed_mps_;
+  Predicted predicted_;
 };
 
 /// Integration step for a record: the model's own, adjusted to divide the sample time.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "estimator/greybox/disturbance/model_ensemble.h"
@@ -44,6 +45,30 @@ std::vector<std::pair<std::size_t, double>> ragged_parameters(const Ensemble& en
     }
   }
   return found;
+}
+
+double width_of_play_m(const Ensemble& ensemble) {
+  const auto width = ensemble.find(kPlayWidth);
+  return width ? ensemble.get(*width, kOwn) : 0.0;
+}
+
+/// Distances of the rod from passing its motion on through a play, as the record's innovations
+/// predict them: a simulation goes astray by more than a play.
+std::vector<double> gaps_m(const plant_sim::ModelFile& model, const Dataset& record,
+                           const std::vector<FreeParameter>& parameters,
+                           const Eigen::VectorXd& theta, double width_m) {
+  ObserverSimulation run(model, record, parameters);
+  Eigen::MatrixXd residuals_m;
+  run.residuals(theta, residuals_m);
+  const ObserverSimulation::Predicted& at = run.predicted();
+  std::vector<double> result(record.size());
+  double reading_m = at.reading_m.front();
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const double ahead_m = reading_m - at.rod_m[k];  // before the rod takes the sensor along
+    result[k] = 0.5 * width_m - std::abs(ahead_m);
+    reading_m = at.reading_m[k] + at.correction_m[k];
+  }
+  return result;
 }
 
 }  // namespace
@@ -127,7 +152,16 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
     }
     if (!result.force) result.transition[k](0, kMostStates - 1) = record.sample_time_s;
   }
+  const double play_m = width_of_play_m(*ensemble);
+  if (play_m > 0.0 && record.innovations) {
+    result.gap_m = gaps_m(model, record, parameters, theta, play_m);
+  }
   return result;
+}
+
+bool has_play(const plant_sim::ModelFile& model, const std::vector<FreeParameter>& parameters,
+              const Eigen::VectorXd& theta) {
+  return width_of_play_m(*model_ensemble(model, model.step_s, parameters, theta)) > 0.0;
 }
 
 }  // namespace estimator::greybox::disturbance

@@ -31,11 +31,20 @@ struct Linearisation {
   std::vector<StateMatrix> transition;
   std::vector<StateVector> from_supply;  ///< per Pa; zero without a supply pressure
   std::vector<double> speed_mps;
+  /// How far the rod has yet to move until the sensor's play passes its motion on, m; negative
+  /// where it does. Empty: no play, or a record without innovations.
+  std::vector<double> gap_m;
 };
 
 /// About the simulation with `theta` (weak observer). Throws as ObserverSimulation does.
 [[nodiscard]] Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
                                       const std::vector<FreeParameter>& parameters,
                                       const Eigen::VectorXd& theta);
+
+inline constexpr const char* kPlayWidth = "backlash.width_m";
+/// True for a model with a play between rod and sensor.
+[[nodiscard]] bool has_play(const plant_sim::ModelFile& model,
+                            const std::vector<FreeParameter>& parameters,
+                            const Eigen::VectorXd& theta);
 
 }  // namespace estimator::greybox::disturbance

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "estimator/greybox/disturbance/predictor.h"
 
@@ -51,6 +52,28 @@ using Lanes = double __attribute__((vector_size(kNoiseLanes * sizeof(double))));
   p[kF][kF] = decay * decay * p[kF][kF];
 }
 
+/// What the reading shows of the rod through a play whose gap is `gap_m`: where the rod's deviation
+/// x ~ N(0, P_yy) exceeds the gap, max(x - gap, 0).
+void pass_play(double gap_m, Lanes (&y_row)[kStates], Lanes& reading_m2) {
+  constexpr double kCertain = 6.0;  // standard deviations
+  for (std::size_t lane = 0; lane < kNoiseLanes; ++lane) {
+    const double sd_m = std::sqrt(std::max(reading_m2[lane], 0.0));
+    if (gap_m < -kCertain * sd_m) continue;
+    if (gap_m > kCertain * sd_m) {
+      for (Lanes& covariance : y_row) covariance[lane] = 0.0;
+      reading_m2[lane] = 0.0;
+      continue;
+    }
+    const double z = sd_m > 0.0 ? gap_m / sd_m : 0.0;
+    const double passed = 0.5 * std::erfc(z / std::numbers::sqrt2);
+    const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+    const double mean = density - z * passed;
+    const double square = (1.0 + z * z) * passed - z * density;
+    for (Lanes& covariance : y_row) covariance[lane] *= passed;
+    reading_m2[lane] *= std::max(square - mean * mean, passed * passed);
+  }
+}
+
 [[gnu::always_inline]] inline void run(const LaneRange& range,
                                        const std::array<StateMatrix, kNoiseLanes>& start,
                                        const LaneNoise& noise,
@@ -85,11 +108,15 @@ using Lanes = double __attribute__((vector_size(kNoiseLanes * sizeof(double))));
     factors = 0;
   };
   for (std::size_t k = range.from; k < range.to; ++k) {
-    const Lanes s_m2 = p[0][0] + sensor_m2;
+    Lanes y_row[kStates];  // covariances with the reading
+    for (std::size_t i = 0; i < kStates; ++i) y_row[i] = p[i][0];
+    Lanes reading_m2 = p[0][0];
+    if (!range.model->gap_m.empty()) pass_play(range.model->gap_m[k], y_row, reading_m2);
+    const Lanes s_m2 = reading_m2 + sensor_m2;
     const Lanes inverse_s_per_m2 = 1.0 / s_m2;
     Lanes gain[kStates];
-    for (std::size_t i = 0; i < count; ++i) gain[i] = p[i][0] * inverse_s_per_m2;
-    gain[kF] = p[kF][0] * inverse_s_per_m2;
+    for (std::size_t i = 0; i < count; ++i) gain[i] = y_row[i] * inverse_s_per_m2;
+    gain[kF] = y_row[kF] * inverse_s_per_m2;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       double* const column = results[lane].gain + k * (count + 1);
       for (std::size_t i = 0; i < count; ++i) column[i] = gain[i][lane];
@@ -100,8 +127,6 @@ using Lanes = double __attribute__((vector_size(kNoiseLanes * sizeof(double))));
       product *= s_m2 * inverse_floor2_per_m2;
       if (++factors == kPerLogarithm) take_logarithm();
     }
-    Lanes y_row[kStates];
-    for (std::size_t i = 0; i < kStates; ++i) y_row[i] = p[i][0];
     for (std::size_t j = 0; j < count; ++j) p[kF][j] -= gain[kF] * y_row[j];
     p[kF][kF] -= gain[kF] * y_row[kF];
     for (std::size_t i = 0; i < count; ++i) {

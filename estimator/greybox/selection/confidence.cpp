@@ -168,6 +168,11 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
+    // one of several that gains little more than the curves that noise allows
+    if (!doubt && !error_remains && diagnosis.missing.size() >= kStandIn &&
+        likely_ratio(diagnosis, effect) < kClearOfRemainder && diagnosis.gains_nats.count(effect)) {
+      doubt = Doubt::stand_in;
+    }
     doubts.push_back(doubt);
   }
   const auto clear =

@@ -9,6 +9,7 @@
 #include "config/schema/joined.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
@@ -23,7 +24,6 @@ constexpr int kMostExchanges = 2;
 /// Candidates of a round that get a noise model of their own.
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kMostLineFinalists = 2;
-constexpr double kParametersOfLine = 3.0;
 /// Share of what a search has explained that may be owed to its models being inexact: a candidate
 /// has to gain more. Lines are nearly exact: their frequencies are tuned, what they move simulated.
 constexpr double kInexact = 0.005;
@@ -34,9 +34,6 @@ constexpr double kContends_nats = 30.0;
 /// Lag of another search's model after one turn of noise model and parameters that further turns,
 /// which gain some tens, do not make up for.
 constexpr double kOutOfReach_nats = 200.0;
-/// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
-/// one.
-constexpr double kOnALine = 0.05;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
 /// Fastest speed over the RMS of the motion's.
@@ -63,16 +60,6 @@ SimulatedEffects simulated_effects(const SearchContext& plain, const InnovationS
     if (round.before.added == stage.model.added) return simulated_effects(round);
   }
   return simulated_effects(plain, stage.model);
-}
-
-/// True for a resonance at the frequency of one of the stage's lines: hardly damped, it rings with
-/// what disturbs the rig from outside.
-bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
-  if (!p.name.ends_with(".resonance_Hz")) return false;
-  const double resonance_Hz = p.to_physical(theta);
-  return std::any_of(stage.noise.lines.begin(), stage.noise.lines.end(), [&](const auto& line) {
-    return std::abs(resonance_Hz - line.frequency_Hz) < kOnALine * line.frequency_Hz;
-  });
 }
 
 /// The first effect of the stage that has left its range, or rings with a line; empty: none.
@@ -281,6 +268,24 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
   return false;
 }
 
+/// Puts a spectral line in the place of a resonance that hardly damps, where it explains as much.
+bool take_line_for_resonance(const SearchContext& context, InnovationSearch& search,
+                             InnovationStage& stage) {
+  std::optional<LineInstead> instead = line_for_resonance(context, stage);
+  if (!instead) return false;
+  instead->without.model.fitted.jacobian.resize(0, 0);
+  search.rounds.push_back(
+      {std::move(instead->without.model), {std::move(instead->candidate)}, true});
+  search.rivals.clear();
+  search.without.clear();
+  stage = std::move(instead->stage);
+  reconsider_sites(context, stage);
+  InnovationStage polished =
+      settled(context, stage.model, stage.noise, kMostTurns, wide(context.options.threads));
+  if (polished.minus_two_log < stage.minus_two_log) stage = std::move(polished);
+  return true;
+}
+
 SearchContext without_holdouts(SearchContext context) {
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
@@ -347,6 +352,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     }
   };
   extend_fully();
+  if (take_line_for_resonance(context, search, stage)) extend_fully();
   take_held(context, held.stage, evidence_nats(), stage, search.rounds);
   for (int round = 0; !context.cancelled(); ++round) {
     search.without = eliminate(context, stage, evidence_nats());

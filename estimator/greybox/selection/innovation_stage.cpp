@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/innovation_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,6 +24,23 @@ constexpr double kFarBehind = 100.0;
 constexpr double kRevived = 2.0;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
 constexpr double kSettled = 1.0;
+
+/// Starts with a wider and a narrower play: between widths that make contact at other reversals,
+/// the likelihood has several maxima.
+std::vector<Eigen::VectorXd> resized_plays(const FitSummary& fitted) {
+  std::vector<Eigen::VectorXd> starts;
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    if (p.name != disturbance::kPlayWidth) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    for (const double ratio : {0.5, 0.7, 1.4, 2.0}) {
+      Eigen::VectorXd start = fitted.theta;
+      start[at] = std::clamp(p.to_theta(ratio * p.to_physical(start[at])), p.lower, p.upper);
+      starts.push_back(std::move(start));
+    }
+  }
+  return starts;
+}
 
 SearchContext with_data(const SearchContext& context, FitDataset data) {
   SearchContext result = context;
@@ -50,7 +68,10 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
     other = fit_innovations(stage.context, all, width, effort);
     if (cost(other) + enough < cost(fitted)) fitted = std::move(other);
   };
-  if (from_file_too) try_start(with_file_values(stage.context, stage.model), 0.0);
+  if (from_file_too) {
+    try_start(with_file_values(stage.context, stage.model), 0.0);
+    for (const Eigen::VectorXd& start : resized_plays(fitted)) try_start(start, 0.0);
+  }
   for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
   stage.model.fitted = std::move(fitted);
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
@@ -90,12 +111,23 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
   InnovationStage best;
   for (int i = 0; i < turns && !plain.cancelled(); ++i) {
     const FitSummary& fitted = stage.model.fitted;
-    stage.linear = disturbance::linearise(plain.problem.model, plain.problem.data,
+    const auto estimate_noise = [&] {
+      stage.noise =
+          disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
+                                      fitted.theta, stage.linear, stage.noise, width.threads)
+              .noise;
+    };
+    stage.linear = disturbance::linearise(plain.problem.model, stage.context.problem.data,
                                           fitted.parameters, fitted.theta);
-    stage.noise =
-        disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
-                                    fitted.theta, stage.linear, stage.noise, width.threads)
-            .noise;
+    if (i == 0 && disturbance::has_play(plain.problem.model, fitted.parameters, fitted.theta)) {
+      estimate_noise();
+      const disturbance::InnovationData followed =
+          disturbance::innovation_data(plain.problem.model, plain.problem.data, fitted.parameters,
+                                       fitted.theta, stage.linear, stage.noise);
+      stage.linear = disturbance::linearise(plain.problem.model, followed.data, fitted.parameters,
+                                            fitted.theta);
+    }
+    estimate_noise();
     refit(plain, stage, i == 0, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
     const double gain = best.minus_two_log - stage.minus_two_log;
     if (gain > 0.0) best = stage;

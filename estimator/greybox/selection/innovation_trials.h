@@ -12,6 +12,7 @@ namespace estimator::greybox::selection {
 
 inline constexpr double kEvidence_nats = 15.0;
 inline constexpr double kPerParameter_nats = 4.3;  ///< log(6000) / 2: a record of 30 s
+inline constexpr double kParametersOfLine = 3.0;
 
 /// A candidate of a round: an effect, or a spectral line where `effect` is empty.
 struct InnovationCandidate {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 
@@ -103,8 +104,10 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
   // several effects may stand in for one law, at any site
-  const bool everywhere = added.size() > 1 && (innovations.physics_missing() ||
-                                               strains_the_plant(named.model.fitted, first.fitted));
+  const bool everywhere =
+      added.size() >= kStandIn ||
+      (added.size() > 1 &&
+       (innovations.physics_missing() || strains_the_plant(named.model.fitted, first.fitted)));
   const std::string site = everywhere ? "" : shared_site(added);
   if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
   // a search is worth it only where one law competes with the effect

@@ -46,6 +46,57 @@ TEST(KalmanGains, OfARandomWalkSettleAtTheRootOfRiccatisEquation) {
   EXPECT_NEAR(found.log_determinant, sum, 1e-6);
 }
 
+/// Moments of max(x - gap, 0) for x ~ N(0, sd), by summation; `slope`: the share of x passed on.
+struct Passed {
+  double slope = 0.0;
+  double variance_m2 = 0.0;
+};
+Passed through_play(double gap_m, double sd_m) {
+  double mean_m = 0.0;
+  double square_m2 = 0.0;
+  double product_m2 = 0.0;
+  constexpr double kStep = 1e-4;
+  for (double z = -10.0; z < 10.0; z += kStep) {
+    const double weight = kStep * std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+    const double out_m = std::max(sd_m * z - gap_m, 0.0);
+    mean_m += weight * out_m;
+    square_m2 += weight * out_m * out_m;
+    product_m2 += weight * out_m * sd_m * z;
+  }
+  return {product_m2 / (sd_m * sd_m), square_m2 - mean_m * mean_m};
+}
+
+// The first sample's covariance is the sensor's.
+TEST(KalmanGains, AReadingBehindAPlayShowsWhatThePlayPassesOn) {
+  const Dataset record = axis_record(10);
+  const NoiseParameters noise{.disturbance_sd = 0.0, .walk_m = 2e-7, .sensor_m = 3e-6};
+  const double sd_m = noise.sensor_m;
+  for (const double gap_m : {-9e-6, -2e-6, 0.0, 1e-6, 5e-6}) {
+    Linearisation model = random_walk(10);
+    model.gap_m.assign(10, gap_m);
+    const KalmanGains found = kalman_gains(model, record, noise, 2e-6);
+    const Passed passed = through_play(gap_m, sd_m);
+    const double s_m2 = passed.variance_m2 + sd_m * sd_m;
+    EXPECT_NEAR(found.gains.gain(0, 0), passed.slope * sd_m * sd_m / s_m2, 1e-6) << gap_m;
+    EXPECT_NEAR(found.gains.scale[0], 2e-6 / std::sqrt(s_m2), 1e-6) << gap_m;
+  }
+}
+
+TEST(KalmanGains, AWideGapShowsNothingAndFirmContactEverything) {
+  const Dataset record = axis_record(400);
+  const NoiseParameters noise{.disturbance_sd = 0.0, .walk_m = 2e-7, .sensor_m = 3e-6};
+  Linearisation model = random_walk(400);
+  const KalmanGains open = kalman_gains(model, record, noise, 3e-6);
+  model.gap_m.assign(400, -1e-3);
+  const KalmanGains firm = kalman_gains(model, record, noise, 3e-6);
+  EXPECT_EQ((firm.gains.gain - open.gains.gain).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(firm.log_determinant, open.log_determinant);
+  model.gap_m.assign(400, 1e-3);
+  const KalmanGains apart = kalman_gains(model, record, noise, 3e-6);
+  EXPECT_EQ(apart.gains.gain.cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_NEAR(apart.gains.scale[399], 1.0, 1e-9);
+}
+
 TEST(KalmanGains, WithoutAnyProcessNoiseTheModelIsTrusted) {
   const Dataset record = axis_record();
   const Linearisation model = linearise(axis(), record, {}, Eigen::VectorXd());

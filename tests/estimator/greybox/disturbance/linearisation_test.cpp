@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <memory>
+
+#include "estimator/greybox/observer_simulation.h"
 #include "tests/estimator/greybox/disturbance/axis_record.h"
 
 namespace estimator::greybox::disturbance {
@@ -45,6 +49,39 @@ TEST(Linearisation, LeavesDryFrictionOutOfTheSlopes) {
   for (const std::size_t k : {0U, 400U}) {
     EXPECT_NEAR((with.transition[k] - without.transition[k]).norm(), 0.0, 1e-6);
   }
+}
+
+// The model's own readings, without noise: they rest while the gap is open.
+TEST(Linearisation, AGapIsOpenWhileTheReadingRests) {
+  plant_sim::ModelFile model = axis();
+  *model.value("backlash.width_m") = 3e-4;
+  for (auto& effect : model.effects) effect.present = effect.name == "backlash";
+  Dataset record = axis_record();
+  EXPECT_THAT(linearise(model, record, {}, Eigen::VectorXd()).gap_m, testing::IsEmpty());
+  record.valid.assign(record.size(), 0);
+  ObserverSimulation run(model, record, {}, 0.0);
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::VectorXd(), residuals_m);
+  record.y_m = run.predicted().reading_m;
+  record.valid.assign(record.size(), 1);
+  InnovationGains gains;
+  gains.states = {"y_m", "v_mps"};
+  gains.gain = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(record.size()));
+  gains.scale = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(record.size()));
+  record.innovations = std::make_shared<const InnovationGains>(gains);
+  const Linearisation linear = linearise(model, record, {}, Eigen::VectorXd());
+  ASSERT_EQ(linear.gap_m.size(), record.size());
+  int open = 0;
+  for (std::size_t k = 2; k < record.size(); ++k) {
+    const double moved_m = std::abs(record.y_m[k] - record.y_m[k - 1]);
+    if (linear.gap_m[k] > 1e-9) {
+      EXPECT_LT(moved_m, 1e-12) << k;
+      ++open;
+    } else if (linear.gap_m[k] < -1e-9) {
+      EXPECT_GT(moved_m, 0.0) << k;
+    }
+  }
+  EXPECT_GT(open, 20);
 }
 
 }  // namespace

@@ -116,6 +116,26 @@ TEST(Confidence, TheLikelihoodCountsWhereItDecided) {
   EXPECT_THAT(named(d), IsEmpty());
 }
 
+TEST(Confidence, OfThreeThatExplainARecordThoseThatGainLittleAreNotEstablished) {
+  Diagnosis d = unexplained();
+  d.verdict = Verdict::missing;
+  d.by_innovations = true;
+  d.missing = {"friction", "load_spring", "load_force"};
+  d.parameters = {{"friction.coulomb_N", 150.0, 4.0, false},
+                  {"load_spring.stiffness_N_per_m", 2000.0, 30.0, false},
+                  {"load_force.force_N", 200.0, 5.0, false}};
+  d.innovations = 6000.0;
+  d.curve_nats = 19.0;
+  d.gains_nats = {{"friction", 1228.0}, {"load_spring", 47.0}, {"load_force", 26.0}};
+  EXPECT_THAT(named(d), ElementsAre("load_spring stand_in", "load_force stand_in"));
+  d.gains_nats = {{"friction", 1228.0}, {"load_spring", 470.0}, {"load_force", 260.0}};
+  EXPECT_THAT(named(d), IsEmpty());
+  // two effects are no bundle
+  d.missing.pop_back();
+  d.gains_nats = {{"friction", 1228.0}, {"load_spring", 47.0}};
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, WhereNoErrorRemainsWhatWasFoundStandsUnlessItsSizeIsWithinItsError) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;

@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -51,6 +54,50 @@ TEST(InnovationSearch, ALinesFrequencyIsFoundToASmallPartOfABin) {
   EXPECT_THAT(found.final.model.added, IsEmpty());
   ASSERT_THAT(found.final.noise.lines, SizeIs(1));
   EXPECT_NEAR(found.final.noise.lines.front().frequency_Hz, kFrequency_Hz, 1.5e-4);
+}
+
+/// A linear axis of the independent simulator and the model that knows nothing of what it hides.
+SearchContext axis_context(const std::string& spec, std::size_t seed) {
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/force_driven_axis.toml");
+  *model.value("mass_kg") = 100.0;
+  *model.value("damping_N_s_per_m") = 200.0;
+  *model.value("gain_N_per_V") = 35.0;
+  Dataset record = diagnose_test::dataset_of(truth::simulate(truth::parse_case(spec, seed)));
+  SearchContext context{make_problem(std::move(model), fit_dataset({std::move(record)}, {})), {}};
+  context.options.threads = 2;
+  return context;
+}
+
+// A random force moves the rod by many times the play: only a filter that knows the gap follows.
+TEST(InnovationSearch, APlayIsFoundThroughARandomForce) {
+  const SearchContext context = axis_context(
+      "rig=linear_axis,motion=multisine,length_s=15,backlash.width_m=0.0002,"
+      "outside.force_N=3.2,outside.corner_Hz=1.7",
+      88);
+  const InnovationSearch found = search_innovations(context, first_stage(context), {});
+  EXPECT_THAT(found.final.model.added, ElementsAre("backlash"));
+  EXPECT_NEAR(found.final.model.fitted.value("backlash.width_m"), 2e-4, 4e-6);
+  EXPECT_FALSE(found.physics_missing());
+}
+
+// A second mass that does not damp rings like the line; what it is, the line says in three numbers.
+TEST(InnovationSearch, ALineTakesThePlaceOfAResonanceThatDoesNotDamp) {
+  SearchContext context = axis_context(
+      "rig=linear_axis,motion=multisine,length_s=15,outside.line_N=25,outside.line_Hz=29.17", 89);
+  std::erase_if(context.problem.candidate_effects,
+                [](const auto& effect) { return effect.name != "second_mass"; });
+  const InnovationStage first =
+      settled(context, first_stage(context), {}, kMostTurns, wide(context.options.threads));
+  EXPECT_FALSE(line_for_resonance(context, first));
+  InnovationStage with = first;
+  for (const InnovationTrial& trial : effect_trials(first)) with = settled(context, first, trial);
+  ASSERT_THAT(with.model.added, ElementsAre("second_mass"));
+  const std::optional<LineInstead> instead = line_for_resonance(context, with);
+  ASSERT_TRUE(instead);
+  EXPECT_THAT(instead->stage.model.added, IsEmpty());
+  ASSERT_THAT(instead->stage.noise.lines, SizeIs(1));
+  EXPECT_NEAR(instead->stage.noise.lines.front().frequency_Hz, 29.17, 2e-3);
 }
 
 }  // namespace

@@ -1,0 +1,81 @@
+#include "estimator/greybox/selection/resonance_or_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "estimator/greybox/selection/innovation_rivals.h"
+#include "estimator/greybox/selection/spectral_line_candidates.h"
+
+namespace estimator::greybox::selection {
+
+namespace {
+
+/// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
+/// one.
+constexpr double kOnALine = 0.05;
+/// Damping ratio below which a resonance may be a line: metal structures have some 0.01.
+constexpr double kHardlyDamped_ratio = 0.01;
+constexpr std::string_view kFrequency = ".resonance_Hz";
+
+bool is_on(const disturbance::SpectralLine& line, double resonance_Hz) {
+  return std::abs(resonance_Hz - line.frequency_Hz) < kOnALine * line.frequency_Hz;
+}
+
+double value_or(const FitSummary& fitted, const std::string& name, double otherwise) {
+  const double value = fitted.value(name);
+  return std::isfinite(value) ? value : otherwise;
+}
+
+/// The effect of the stage that rings for long; empty: none.
+std::string ringing_effect(const InnovationStage& stage) {
+  const FitSummary& fitted = stage.model.fitted;
+  for (const std::string& effect : stage.model.added) {
+    if (std::isfinite(fitted.value(effect + std::string(kFrequency))) &&
+        value_or(fitted, effect + ".damping_ratio", 0.0) < kHardlyDamped_ratio) {
+      return effect;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
+  if (!p.name.ends_with(kFrequency)) return false;
+  const double resonance_Hz = p.to_physical(theta);
+  return std::any_of(stage.noise.lines.begin(), stage.noise.lines.end(),
+                     [&](const auto& line) { return is_on(line, resonance_Hz); });
+}
+
+std::optional<LineInstead> line_for_resonance(const SearchContext& plain,
+                                              const InnovationStage& stage) {
+  const std::string effect = ringing_effect(stage);
+  if (effect.empty() || plain.cancelled()) return {};
+  const double resonance_Hz = stage.model.fitted.value(effect + std::string(kFrequency));
+  LineInstead result;
+  result.without = without(plain, stage, effect);
+  const std::vector<ScoredLine> lines = line_candidates(plain, result.without);
+  const auto on = std::find_if(lines.begin(), lines.end(), [&](const ScoredLine& scored) {
+    return is_on(scored.line, resonance_Hz);
+  });
+  if (on == lines.end()) return {};
+  disturbance::NoiseModel noise = result.without.noise;
+  noise.lines.push_back(on->line);
+  result.stage =
+      settled(plain, result.without.model, noise, kMostTurns, wide(plain.options.threads));
+  const double penalty = kPerParameter_nats * kParametersOfLine;
+  if (!(penalised(result.stage) + 2.0 * penalty < penalised(stage) + 2.0 * kRivals_nats)) return {};
+  result.candidate.line = on->line;
+  result.candidate.settled = true;
+  result.candidate.penalty_nats = penalty;
+  result.candidate.gain_nats =
+      0.5 * (result.without.minus_two_log - result.stage.minus_two_log) - penalty;
+  result.candidate.fitted = result.stage.model.fitted;
+  result.candidate.fitted.jacobian.resize(0, 0);
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,27 @@
+// A second mass that hardly damps rings like a spectral line: which of the two explains a record is
+// decided by likelihood, with everything else in the model.
+#pragma once
+
+#include <optional>
+
+#include "estimator/greybox/selection/innovation_trials.h"
+
+namespace estimator::greybox::selection {
+
+/// True for a resonance at the frequency of one of the stage's lines: hardly damped, it rings with
+/// what disturbs the rig from outside.
+[[nodiscard]] bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p,
+                                     double theta);
+
+struct LineInstead {
+  InnovationStage without;        ///< the stage without the resonance
+  InnovationStage stage;          ///< with the line
+  InnovationCandidate candidate;  ///< the line, its gain over `without`
+};
+
+/// A spectral line in the place of the stage's resonance that hardly damps, where it explains as
+/// much.
+[[nodiscard]] std::optional<LineInstead> line_for_resonance(const SearchContext& plain,
+                                                            const InnovationStage& stage);
+
+}  // namespace estimator::greybox::selection
