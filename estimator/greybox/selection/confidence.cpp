@@ -19,6 +19,9 @@ constexpr double kBeyondDoubt = 100.0;
 /// The same where what remains enters as the effect does: a square of the speed in place of the
 /// cube leaves 7 % of the error.
 constexpr double kBeyondDoubtThere = 400.0;
+/// The same with the observer, below which a free run does not count: over a whole record it drifts
+/// by what is far below the error that remains.
+constexpr double kLeastObserved = 3.0;
 
 /// True where the command is a force: there is no valve in between.
 bool is_driven_by_force(const Diagnosis& diagnosis) {
@@ -68,6 +71,7 @@ double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
       without != diagnosis.without_rms_m.end()) {
     observed = explained_ratio(without->second, diagnosis.rms_after_m, diagnosis.rms_after_m);
   }
+  if (observed < kLeastObserved) return observed;
   return std::fmax(observed, free_run);  // a NaN gives the other
 }
 

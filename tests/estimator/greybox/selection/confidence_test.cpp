@@ -105,6 +105,14 @@ TEST(Confidence, AnEffectThatACurveElsewhereMatchesIsNotEstablished) {
   EXPECT_THAT(named(d), IsEmpty());
 }
 
+TEST(Confidence, AFreeRunEstablishesNoEffectThatTheObserverHardlyShows) {
+  Diagnosis d = with_friction(150e-6, "measurement");
+  d.steps = {{"", 150e-6, 2e-3}, {"friction", 100e-6, 1e-4}};
+  EXPECT_THAT(named(d), ElementsAre("friction remainder"));
+  d.steps = {{"", 250e-6, 2e-3}, {"friction", 100e-6, 1e-4}};  // 5.25 times what remains
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, TheLikelihoodCountsWhereItDecided) {
   Diagnosis d = with_friction(120e-6, "measurement");
   d.innovations = 2000.0;
