@@ -91,7 +91,7 @@ class ForceDrivenAxis {
     inverse_mass_ = S(1.0) / driven_kg;
     arrest_kg_per_s_ = driven_kg * S(1.0 / step_s);
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
-    spring_rate_ = max(sqrt(effects.stiffness_N_per_m() * inverse_mass_),
+    spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
                        S(kFiner) * effects.coupling_rate_per_s());
   }
 
@@ -112,7 +112,11 @@ class ForceDrivenAxis {
   /// Number of parts of a step, fine enough for damping and springs.
   S divisions() const {
     const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
-    const S fastest = max(slope * inverse_mass_, spring_rate_);
+    S fastest = max(slope * inverse_mass_, spring_rate_);
+    if (effects.stiffness_varies()) {
+      const S stiffness = effects.stiffness_N_per_m(state.v_mps);
+      fastest = max(fastest, sqrt(stiffness * inverse_mass_));
+    }
     return clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
   }
 

@@ -181,17 +181,15 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
+  /// At any speed.
   [[nodiscard]] S stiffness_N_per_m() const {
-    S sum = 0.0;
-    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
-      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
-    });
-    this->template for_each_active<Site::dry_friction>(
-        [&]<class T>(Tag<T>, const auto& p, const auto&) {
-          if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
-        });
-    return sum + formulas_.stiffness_N_per_m();
+    return library_stiffness_N_per_m() + formulas_.stiffness_N_per_m();
   }
+  /// At any speed up to |v_mps|.
+  [[nodiscard]] S stiffness_N_per_m(const S& v_mps) const {
+    return library_stiffness_N_per_m() + formulas_.stiffness_N_per_m(v_mps);
+  }
+  [[nodiscard]] bool stiffness_varies() const { return formulas_.acts_on(Site::force); }
 
   [[nodiscard]] S reading_m(S y_m) const {
     this->template for_each_active<Site::sensor>(
@@ -211,6 +209,18 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
  private:
+  [[nodiscard]] S library_stiffness_N_per_m() const {
+    S sum = 0.0;
+    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+    });
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+        });
+    return sum;
+  }
+
   /// Chains the formulas of a site behind its effects.
   template <Site kSite>
   [[nodiscard]] S apply_formulas(const S& x) const {

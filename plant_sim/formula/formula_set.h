@@ -113,6 +113,13 @@ class FormulaSet {
                 [&](const Effect& effect) { total += effect.max_slope.stiffness_N_per_m(); });
     return total;
   }
+  /// The same at any speed up to |v_mps|.
+  [[nodiscard]] S stiffness_N_per_m(const S& v_mps) const {
+    S total = 0.0;
+    each_active(effects::Site::force,
+                [&](const Effect& effect) { total += effect.max_slope.stiffness_N_per_m(v_mps); });
+    return total;
+  }
 
   /// Twice the largest |dQ/dp| over the plausible pressures, estimated: both chambers see it.
   [[nodiscard]] S conductance_m3ps_per_Pa() const {

@@ -45,19 +45,24 @@ class MaxSlope {
   template <class F>
   void prepare(const VariableRange& position_m, const VariableRange& speed_mps, F&& force_N) {
     const double way_m = position_m.max - position_m.min;
-    stiffness_N_per_m_ = S(0.0);
-    for (int i = 0; i < kPositions; ++i) {
-      const S y_m = position_m.min + way_m * i / (kPositions - 1);
-      for (const double part : {-1.0, -0.03, 0.0, 0.03, 1.0}) {
-        const S v_mps = part * speed_mps.max;
-        const auto by_position = [&](const S& y) { return force_N(y, v_mps); };
-        stiffness_N_per_m_ = max(stiffness_N_per_m_, slope_at(by_position, y_m, kNear_m * way_m));
+    const auto stiffest = [&](double v_mps) {
+      S most = 0.0;
+      for (int i = 0; i < kPositions; ++i) {
+        const S y_m = position_m.min + way_m * i / (kPositions - 1);
+        const auto by_position = [&](const S& y) { return force_N(y, S(v_mps)); };
+        most = max(most, slope_at(by_position, y_m, kNear_m * way_m));
       }
-    }
+      return most;
+    };
     S most = 0.0;
+    S stiffness = stiffest(0.0);
     double from_mps = 0.0;
     double to_mps = kLeast_mps;
-    for (S& slope : slopes_N_s_per_m_) {
+    for (std::size_t i = 0; i < kOctaves; ++i) {
+      S& slope = slopes_N_s_per_m_[i];
+      const double edge_mps = i + 1 < kOctaves ? to_mps : speed_mps.max;
+      stiffness = max(stiffness, max(stiffest(edge_mps), stiffest(-edge_mps)));
+      stiffnesses_N_per_m_[i] = stiffness;
       for (const double place : {0.0, 0.5, 1.0}) {
         const S y_m = position_m.min + place * way_m;
         const auto by_speed = [&](const S& v) { return force_N(y_m, v); };
@@ -71,25 +76,31 @@ class MaxSlope {
   }
 
   /// The largest |dF/dv| at any speed up to |v_mps|.
-  [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
-    const S speed_mps = abs(v_mps);
-    S slope = slopes_N_s_per_m_[0];
-    double edge_mps = kLeast_mps;
-    for (std::size_t i = 1; i < kOctaves; ++i) {
-      slope = select(speed_mps > S(edge_mps), slopes_N_s_per_m_[i], slope);
-      edge_mps *= 2.0;
-    }
-    return slope;
-  }
+  [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const { return up_to(v_mps, slopes_N_s_per_m_); }
 
-  /// The largest |dF/dy| over the range of positions.
-  [[nodiscard]] const S& stiffness_N_per_m() const { return stiffness_N_per_m_; }
+  /// The largest |dF/dy| over the range of positions, at any speed up to |v_mps|.
+  [[nodiscard]] S stiffness_N_per_m(const S& v_mps) const {
+    return up_to(v_mps, stiffnesses_N_per_m_);
+  }
+  /// The same at any speed.
+  [[nodiscard]] const S& stiffness_N_per_m() const { return stiffnesses_N_per_m_.back(); }
 
  private:
   static constexpr int kPositions = 33;
   static constexpr double kNear_m = 1e-3;  ///< distance within the range
   static constexpr std::size_t kOctaves = 24;
   static constexpr double kLeast_mps = 1e-4;
+
+  static S up_to(const S& v_mps, const std::array<S, kOctaves>& by_octave) {
+    const S speed_mps = abs(v_mps);
+    S most = by_octave[0];
+    double edge_mps = kLeast_mps;
+    for (std::size_t i = 1; i < kOctaves; ++i) {
+      most = select(speed_mps > S(edge_mps), by_octave[i], most);
+      edge_mps *= 2.0;
+    }
+    return most;
+  }
 
   /// The steepest of two halves of the way and of the points between them.
   template <class F>
@@ -110,7 +121,7 @@ class MaxSlope {
   }
 
   std::array<S, kOctaves> slopes_N_s_per_m_;
-  S stiffness_N_per_m_;
+  std::array<S, kOctaves> stiffnesses_N_per_m_;
 };
 
 }  // namespace plant_sim::formula

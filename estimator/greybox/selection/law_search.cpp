@@ -13,12 +13,15 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
   SearchContext result = context;
   DiagnosisProblem& problem = result.problem;
   for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
-  problem.candidate_effects = absent_effects(problem.model);
+  // the library's effects with the sizes that are typical of this rig
   std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
-    return std::none_of(laws.begin(), laws.end(),
-                        [&](const Law& law) { return law.effect.name == effect.name; }) &&
-           std::find(effects.begin(), effects.end(), effect.name) == effects.end();
+    return std::find(effects.begin(), effects.end(), effect.name) == effects.end();
   });
+  for (const plant_sim::EffectInfo& effect : absent_effects(problem.model)) {
+    const bool law = std::any_of(laws.begin(), laws.end(),
+                                 [&](const Law& one) { return one.effect.name == effect.name; });
+    if (law) problem.candidate_effects.push_back(effect);
+  }
   return result;
 }
 

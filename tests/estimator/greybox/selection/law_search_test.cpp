@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -97,6 +100,24 @@ TEST(Laws, NoLawCompetesWithTheRightEffect) {
   ASSERT_THAT(quadratic.found.final.model.added, ElementsAre("quadratic_damping"));
   EXPECT_FALSE(law_competes(quadratic.context, "force", quadratic.found));
   EXPECT_FALSE(law_competes(quadratic.context, "sensor", quadratic.found));
+}
+
+TEST(Laws, LibraryEffectsBesideLawsKeepTheSizesOfTheRig) {
+  SearchContext context = servo_context({.rate_mps = curved_mps});
+  constexpr double kTypical = 12345.0;
+  for (plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    if (effect.name == "null_bias") effect.parameters.front().typical = kTypical;
+  }
+  const std::optional<LawSearch> found =
+      search_laws(context, first_stage(context), "", {"null_bias"});
+  ASSERT_TRUE(found);
+  const std::vector<plant_sim::EffectInfo>& candidates = found->context.problem.candidate_effects;
+  const auto bias = std::find_if(candidates.begin(), candidates.end(),
+                                 [](const auto& effect) { return effect.name == "null_bias"; });
+  ASSERT_NE(bias, candidates.end());
+  EXPECT_EQ(bias->parameters.front().typical, kTypical);
+  EXPECT_TRUE(std::none_of(candidates.begin(), candidates.end(),
+                           [](const auto& effect) { return effect.name == "deadband"; }));
 }
 
 TEST(Laws, AHealthyRecordTeachesNone) {
