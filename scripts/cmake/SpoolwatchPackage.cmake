@@ -52,7 +52,8 @@ endforeach()
 install(TARGETS ${programs} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 
 # The service. Its configuration finds the models where the package puts them.
-install(FILES systemd/spoolwatchd.service DESTINATION lib/systemd/system)
+install(FILES systemd/spoolwatchd.service systemd/spoolwatch-serve.service
+  systemd/spoolwatch-serve.socket DESTINATION lib/systemd/system)
 install(FILES systemd/spoolwatch.sysusers DESTINATION lib/sysusers.d RENAME spoolwatch.conf)
 install(FILES systemd/60-spoolwatch.rules DESTINATION lib/udev/rules.d)
 file(READ config/spoolwatchd.toml text)

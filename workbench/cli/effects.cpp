@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 #include "config/units/quantity.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
@@ -91,6 +94,19 @@ void print_library(const std::vector<EffectInfo>& listed) {
   }
 }
 
+/// Throws where `word` is neither an effect of the library nor, by its looks, a model file.
+const EffectInfo* effect_named(const std::string& word) {
+  if (const EffectInfo* effect = plant_sim::find_effect(word)) return effect;
+  std::error_code ignored;
+  if (word.ends_with(".toml") || std::filesystem::exists(word, ignored)) return nullptr;
+  std::vector<std::string> names;
+  for (const EffectInfo& effect : plant_sim::effect_library()) names.push_back(effect.name);
+  const std::string near = config::schema::nearest(word, names);
+  throw config::schema::UsageError("effects: " + word +
+                                   " is neither an effect of the library nor a model file" +
+                                   (near.empty() ? "" : ", did you mean " + near + "?"));
+}
+
 void list_effects(const std::vector<EffectInfo>& listed, const std::string& json) {
   if (json.empty()) return print_library(listed);
   present::write_json(library_json(listed).dump(2) + "\n", json);
@@ -101,10 +117,12 @@ void list_effects(const std::vector<EffectInfo>& listed, const std::string& json
 void add_effects(CLI::App& command, int&) {
   auto json = std::make_shared<std::string>();
   auto model = std::make_shared<std::string>();
-  command.add_option("MODEL", *model, "a model file, to list its own effects too");
+  command.add_option("MODEL", *model,
+                     "a model file, to list its own effects too; or an effect, to list it alone");
   add_json(command, *json);
   command.callback([json, model] {
     if (model->empty()) return list_effects(plant_sim::effect_library(), *json);
+    if (const EffectInfo* effect = effect_named(*model)) return list_effects({*effect}, *json);
     const plant_sim::ModelFile file = plant_sim::load_model(*model);
     const present::PrintedAxis axis(present::motion_of(file));
     list_effects(plant_sim::effects_of(file), *json);

@@ -95,8 +95,14 @@ int run(int argc, char** argv) {
       config::schema::require_known_options(words, command, is_option ? "" : words.front() + ": ");
       workbench::cli::check_places(command);
     }
-    app.exit(error);
-    return asked_for_help ? 0 : config::schema::kUsageExitCode;
+    if (asked_for_help) {
+      app.exit(error);
+      return 0;
+    }
+    const bool is_command = !words.front().starts_with('-');
+    throw config::schema::UsageError(
+        (is_command ? words.front() + ": " : "") + std::string(error.what()) + "; spoolwatch " +
+        (is_command ? "help " + words.front() : "--help") + " lists what it takes");
   }
   std::cout.flush();
   if (std::fflush(stdout) != 0 || !std::cout) {

@@ -142,7 +142,12 @@ void add_new(CLI::App& command, int&) {
   std::vector<std::string> names;
   for (const Kind& kind : model::kinds()) names.push_back(kind.name);
   names.emplace_back(kStandKind);
-  command.add_option("KIND", options->kind, config::schema::joined(names))->required();
+  command.add_option("KIND", options->kind, config::schema::joined(names))
+      ->required()
+      ->check([](const std::string& kind) {  // before CLI11 asks for other options
+        if (kind != kStandKind) (void)model::find_kind(kind);
+        return std::string();
+      });
   command.add_option("-o,--output", options->output, "the file to write")->required();
   command.add_option("--name", options->name, "the model's or stand's name; default: the file's");
   command.add_flag("--ask", options->ask, "ask for what is not given, also without a terminal");

@@ -43,8 +43,8 @@ void serve_page(serve::ServeOptions options) {
   std::cout << "Open " << page.url() << "\nThe session's files are in " << folder
             << "; Ctrl-C ends it." << std::endl;
   if (page.port() == 0) {
-    std::cout << "PORT is that of a tunnel to " << options.socket
-              << ", as ssh -L PORT:" << options.socket << " makes one." << std::endl;
+    std::cout << "PORT is that of a tunnel to " << page.path() << ", as ssh -L PORT:" << page.path()
+              << " makes one." << std::endl;
   }
   std::thread watch([&] {
     while (!stop.reached()) std::this_thread::sleep_for(std::chrono::milliseconds(100));

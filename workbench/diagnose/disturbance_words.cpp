@@ -20,7 +20,8 @@ std::string random_words(const selection::Disturbance& d) {
   }
   const std::string size = config::units::words(
       config::units::quantity(d.as == "force" ? "force_N" : "speed_mps", d.value, std::nan("")));
-  return fmt::format("a random {} of {} RMS, most of it below {:.2g} Hz", d.as, size, d.corner_Hz);
+  return fmt::format("a random {} of {} RMS, most of it below {} Hz", d.as, size,
+                     config::units::three_digits(d.corner_Hz));
 }
 
 std::string line_words(const selection::DisturbanceLine& line) {

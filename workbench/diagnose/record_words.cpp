@@ -122,10 +122,10 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
   }
   if (d.step_error_m > kCoarseStep * d.noise_floor_m) {
     out.push_back(fmt::format(
-        "a quarter of the integration step changes the simulation by {}, {:.2g} times the noise "
+        "a quarter of the integration step changes the simulation by {}, {} times the noise "
         "floor: values may be off by more than their errors; run again with --set step_s={:.2g}",
-        config::units::length_words(d.step_error_m), d.step_error_m / d.noise_floor_m,
-        0.25 * d.better.step_s));
+        config::units::length_words(d.step_error_m),
+        config::units::three_digits(d.step_error_m / d.noise_floor_m), 0.25 * d.better.step_s));
   }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;

@@ -344,7 +344,7 @@ const Kind& find_kind(const std::string& name) {
   const std::string near = config::schema::nearest(name, names);
   throw UsageError("new: kind " + name + " is unknown" +
                    (near.empty() ? "" : ", did you mean " + near + "?") +
-                   "; allowed: " + config::schema::joined(names));
+                   "; allowed: " + config::schema::joined(names) + ", and stand");
 }
 
 Answers with_usual(const Kind& kind, const Answers& answers) {

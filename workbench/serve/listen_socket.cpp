@@ -1,6 +1,7 @@
 #include "workbench/serve/listen_socket.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -8,7 +9,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 #include "config/schema/error.h"
 
@@ -43,6 +46,36 @@ bool served(const sockaddr_un& address) {
 
 }  // namespace
 
+std::optional<ListenSocket> passed_socket() {
+  const char* const to = std::getenv("LISTEN_PID");
+  if (to == nullptr || to != std::to_string(getpid())) return {};
+  const char* const count = std::getenv("LISTEN_FDS");
+  const bool one = count != nullptr && std::string_view(count) == "1";
+  unsetenv("LISTEN_PID");
+  unsetenv("LISTEN_FDS");
+  constexpr int kPassed = 3;  // SD_LISTEN_FDS_START
+  const std::string what = "socket of systemd";
+  if (!one) throw RunError(what + ": is not one; allowed: one ListenStream");
+  int listens = 0;
+  socklen_t size = sizeof listens;
+  if (getsockopt(kPassed, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) != 0) fail(-1, what);
+  sockaddr_storage address{};
+  size = sizeof address;
+  if (getsockname(kPassed, reinterpret_cast<sockaddr*>(&address), &size) != 0) fail(-1, what);
+  fcntl(kPassed, F_SETFD, FD_CLOEXEC);
+  const auto& inet = reinterpret_cast<const sockaddr_in&>(address);
+  const bool here =
+      address.ss_family == AF_UNIX ||
+      (address.ss_family == AF_INET && ntohl(inet.sin_addr.s_addr) == INADDR_LOOPBACK);
+  if (listens == 0 || !here) {
+    throw RunError(what +
+                   ": does not listen on this machine alone; allowed: 127.0.0.1:PORT or the "
+                   "path of a Unix socket");
+  }
+  if (address.ss_family == AF_INET) return ListenSocket{kPassed, ntohs(inet.sin_port), "", true};
+  return ListenSocket{kPassed, 0, reinterpret_cast<const sockaddr_un&>(address).sun_path, true};
+}
+
 ListenSocket listen_on_port(unsigned short port) {
   const std::string what = "127.0.0.1:" + std::to_string(port);
   const int file = make(AF_INET, what);
@@ -58,7 +91,7 @@ ListenSocket listen_on_port(unsigned short port) {
       getsockname(file, general, &size) != 0) {
     fail(file, what);
   }
-  return {file, ntohs(address.sin_port)};
+  return {file, ntohs(address.sin_port), ""};
 }
 
 ListenSocket listen_on_path(const std::string& path) {
@@ -80,7 +113,7 @@ ListenSocket listen_on_path(const std::string& path) {
   const bool bound = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   umask(before);
   if (!bound || listen(file, kWaiting) != 0) fail(file, path);
-  return {file, 0};
+  return {file, 0, path};
 }
 
 }  // namespace workbench::serve

@@ -2,15 +2,24 @@
 
 #include <unistd.h>
 
+#include <utility>
+
 #include "workbench/serve/listen_socket.h"
 #include "workbench/serve/site.h"
 
 namespace workbench::serve {
+namespace {
+
+ListenSocket listen_as(const ServeOptions& options) {
+  if (const auto passed = passed_socket()) return *passed;
+  return options.socket.empty() ? listen_on_port(options.port) : listen_on_path(options.socket);
+}
+
+}  // namespace
 
 struct Serve::Parts {
-  Parts(const ServeOptions& options, const ListenSocket& listening)
-      : port(listening.port),
-        socket(options.socket),
+  Parts(const ServeOptions& options, ListenSocket socket)
+      : listening(std::move(socket)),
         site({.folder = options.folder,
               .port = listening.port,
               .live = {options.lcm_url, options.prefix},
@@ -23,30 +32,29 @@ struct Serve::Parts {
   ~Parts() {
     server.stop();
     site.end();
-    if (!socket.empty()) unlink(socket.c_str());
+    if (!listening.path.empty() && !listening.passed) unlink(listening.path.c_str());
   }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  unsigned short port;
-  std::string socket;
+  ListenSocket listening;
   Site site;
   HttpServer server;
 };
 
 Serve::Serve(const ServeOptions& options)
-    : parts_(std::make_unique<Parts>(options, options.socket.empty()
-                                                  ? listen_on_port(options.port)
-                                                  : listen_on_path(options.socket))) {}
+    : parts_(std::make_unique<Parts>(options, listen_as(options))) {}
 
 Serve::~Serve() = default;
 
 std::string Serve::url() const {
-  const std::string port = parts_->port == 0 ? "PORT" : std::to_string(parts_->port);
-  return "http://127.0.0.1:" + port + "/#" + parts_->site.token();
+  const std::string at = port() == 0 ? "PORT" : std::to_string(port());
+  return "http://127.0.0.1:" + at + "/#" + parts_->site.token();
 }
 
-unsigned short Serve::port() const { return parts_->port; }
+unsigned short Serve::port() const { return parts_->listening.port; }
+
+const std::string& Serve::path() const { return parts_->listening.path; }
 
 void Serve::run() { parts_->server.run(); }
 

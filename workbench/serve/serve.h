@@ -22,7 +22,8 @@ struct ServeOptions {
 
 class Serve {
  public:
-  /// Listens from here on. Throws config::schema::Error.
+  /// Listens from here on, on the socket that systemd passes if there is one. Throws
+  /// config::schema::Error.
   explicit Serve(const ServeOptions& options);
   ~Serve();
   Serve(const Serve&) = delete;
@@ -31,6 +32,8 @@ class Serve {
   /// Address to open in the browser, with its token.
   [[nodiscard]] std::string url() const;
   [[nodiscard]] unsigned short port() const;
+  /// Of the Unix socket; empty: a port.
+  [[nodiscard]] const std::string& path() const;
   /// Serves on this thread until stop().
   void run();
   /// May be called from any thread.

@@ -30,6 +30,21 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
   EXPECT_THAT(text, HasSubstr("0 to 1e-09 m3/s/Pa, typically 2e-12: leakage past the piston"));
 }
 
+TEST(Effects, ListsOneAloneByEitherOfItsNames) {
+  for (const char* name : {"coupled_slaves", "added_load"}) {
+    const std::string text = output({name});
+    EXPECT_THAT(text, testing::StartsWith("coupled_slaves\n")) << name;
+    EXPECT_THAT(text, HasSubstr("needle_N_s2_per_m2")) << name;
+    EXPECT_THAT(text, testing::Not(HasSubstr("transport_delay"))) << name;
+  }
+  try {
+    output({"frction"});
+    FAIL() << "no refusal";
+  } catch (const config::schema::UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did you mean friction?"));
+  }
+}
+
 TEST(Effects, WritesTheSameAsJson) {
   const auto json = nlohmann::json::parse(output({"--json", "-"}));
   ASSERT_EQ(json["effects"].size(), 21U);
