@@ -118,6 +118,28 @@ class Scoring(unittest.TestCase):
         self.expect("no", True, "outside_laws", of, answer("missing", "friction"))
         self.expect("no", False, "leftout", of, answer("nothing_missing"))
 
+    def test_a_law_is_right_by_site_variable_family_and_error(self):
+        of = record(left_out={**LAW, "name": "cubic_damping", "classes": ["force"],
+                              "variables": ["v", "speed"]}, outside=SHAKEN)
+        floor = {"sensor_m": 1e-6, "disturbed_m": 4e-6}
+
+        def judged(verdict, **given):
+            all_given = answer(verdict, floor=floor, **given)
+            return [value for _, value in sorted(confusion.score("outside_laws", of, all_given).items())
+                    if _.startswith("law_")]
+
+        # sorted: at the floor, family, site, variable
+        law = {"name": "cubic_damping", "site": "force", "variables": ["v"]}
+        self.assertEqual(judged("learned", laws=[law], rms_after_m=4.5e-6), [True] * 4)
+        law = {"name": "sloping_damping", "site": "opening", "variables": ["y"]}
+        self.assertEqual(judged("learned", laws=[law], rms_after_m=5e-6), [False] * 4)
+        change = {"parameter": "plant.damping_N_s_per_m"}
+        self.assertEqual(judged("changing", changing=[change], rms_after_m=4e-6),
+                         [True, False, True, False])
+        places = [{"class": "gain", "variable": "u"}, {"class": "force", "variable": "v"}]
+        self.assertEqual(judged("unexplained", where=places, rms_after_m=1e-3),
+                         [False, False, True, True])
+
     def test_a_line_of_force_is_found_by_its_frequency_and_size(self):
         outside = {"force_N": 0.0, "pulsation_Pa": 0.0, "shake_m": 0.0, "line_N": 20.0,
                    "line_Hz": 20.0}

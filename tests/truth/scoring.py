@@ -117,6 +117,49 @@ def score_law(record, verdict, answer, named):
     return result
 
 
+# Where in `where` the effect of a law's site, or of a changed parameter, appears.
+CLASSES_OF_SITE = {"force": {"force"}, "dry_friction": {"force"}, "sensor": {"measurement"},
+                   "command": {"command", "flow", "gain"}, "spool": {"command", "flow", "gain"}}
+CLASSES_OF_PARAMETER = {"mass": {"force"}, "damping": {"force"}, "force": {"force"},
+                        "friction": {"force"}, "stiffness": {"force"}}
+VALVE = {"flow", "gain"}
+
+
+def classes_of_parameter(name):
+    return next((classes for word, classes in CLASSES_OF_PARAMETER.items() if word in name), VALVE)
+
+
+def judge_law(record, answer):
+    """Of a record with a law outside the library: whether site, variable and family are right, by
+    the law or change that was learned, by the library's name of the same equation, or else by the
+    first two places of `where`; and whether the error stands at the floor."""
+    left_out = record["left_out"]
+    verdict = answer.get("verdict")
+    classes, variables = set(left_out["classes"]), set(left_out["variables"])
+    family = False
+    if verdict == "learned":
+        laws = answer["laws"]
+        found = set().union(*(CLASSES_OF_SITE.get(law["site"], VALVE) for law in laws))
+        of = {name for law in laws for name in law["variables"]}
+        family = any(law.get("name") == left_out["name"] for law in laws)
+    elif verdict == "changing":
+        found = set().union(*(classes_of_parameter(one["parameter"])
+                              for one in answer["changing"]))
+        of = {"time"}
+        family = "time" in variables
+    elif answer.get("missing") == [LIBRARY_NAMES.get(left_out["name"], left_out["name"])]:
+        found, of, family = classes, variables, True
+    else:
+        places = (answer.get("where") or [])[:2]
+        found = {where.get("class") for where in places}
+        of = {where.get("variable") for where in places}
+    floors = answer.get("floor") or {}
+    floor = max([value for key in ("sensor_m", "disturbed_m") if (value := floors.get(key))],
+                default=float("nan"))
+    return {"law_site": bool(found & classes), "law_variable": bool(of & variables),
+            "law_family": family, "law_at_floor": (answer.get("rms_after_m") or 1e9) <= 1.15 * floor}
+
+
 def score(plan, record, answer):
     """right: yes | group | invisible | no; what was named; for leftout right verdict, variable."""
     rig = record.get("rig", "actuator")
@@ -130,6 +173,7 @@ def score(plan, record, answer):
         law = score_law(record, verdict, answer, named)
         law_named = law.pop("named")
         result.update(law)
+        result.update(judge_law(record, answer))
         result["wrong"] = claims and bool(named) and not law_named
         if plan == "leftout":
             told = verdict in ("unexplained", "learned") or law_named
