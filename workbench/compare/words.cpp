@@ -150,7 +150,7 @@ std::string dependence_words(const validation::Comparison& c) {
   }
   if (c.whiteness_p < kSignificant) {
     return "The residual is not white, yet independent of the command: look at what acts without "
-           "it, such as the sensor, the load or the supply.";
+           "it, such as the sensor, the load or the supply; `diagnose` measures it.";
   }
   if (!std::isfinite(c.independence_p) || !std::isfinite(c.whiteness_p)) return {};
   return "The residual is white and independent of the command, as noise is.";
@@ -187,6 +187,11 @@ Words words(const validation::Comparison& c) {
   } else if (somewhere) {
     w.judgement = Judgement::fails_somewhere;
     w.verdict = "Fails " + fails_where(c.headline);
+  } else if (c.independence_p >= kSignificant) {
+    w.verdict =
+        "Above the noise floor, yet nothing that is left follows the command, position, velocity "
+        "or "
+        "time: like a disturbance.";
   } else {
     w.verdict = "Fails throughout: no range of position, velocity, command or time stands out.";
   }

@@ -89,6 +89,16 @@ TEST(Words, NameTheRangeThatFails) {
   EXPECT_THAT(said.verdict, StartsWith("Fails from 15 to 20 s: "));
 }
 
+TEST(Words, CallWhatFollowsNothingADisturbance) {
+  const Words said =
+      words(compared([](double t, double, double) { return 0.003 * std::sin(45.9 * t); }));
+  EXPECT_EQ(said.judgement, Judgement::fails_throughout);
+  EXPECT_THAT(said.verdict, HasSubstr("like a disturbance"));
+  EXPECT_THAT(said.lines, Contains(HasSubstr("yet independent of the command")));
+  const Words slower = words(compared([](double, double u, double) { return -0.03 * u; }));
+  EXPECT_THAT(slower.verdict, Not(HasSubstr("disturbance")));
+}
+
 TEST(Where, ReadsAsPeopleSpeak) {
   EXPECT_EQ(present::where(validation::RegionRange{"speed", 0.0, 0.005, "", true, false}),
             "below 5 mm/s");
