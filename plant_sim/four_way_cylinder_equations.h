@@ -44,7 +44,9 @@ template <class S, class Design>
 template <bool kEffects>
 S FourWayCylinder<S, Design>::opening_m(const State& x) const {
   S opening_m = x.spool_m;
-  if constexpr (kEffects) opening_m = effects.opening_m(opening_m, derived_.valve_gain_m_per_V);
+  if constexpr (kEffects) {
+    opening_m = effects.opening_m(opening_m, derived_.valve_gain_m_per_V, x.y_m);
+  }
   return opening_m;
 }
 

@@ -104,8 +104,8 @@ S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
                     abs(state.spool_mps) * S(derived_.step_s);
   if (!effects.any()) return spool_m;
   const S& gain = derived_.valve_gain_m_per_V;
-  const S opening_m = max(
-      spool_m, max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
+  const S opening_m = max(spool_m, max(abs(effects.opening_m(spool_m, gain, state.y_m)),
+                                       abs(effects.opening_m(-spool_m, gain, state.y_m))));
   return effects.laps() ? opening_m + S(2.0) * effects.underlap_m(gain) : opening_m;
 }
 

@@ -112,7 +112,7 @@ class VelocityServo {
   }
   /// Speed behind the valve's openings; an underlapped port's is the net one of its two edges.
   S opened(const S& drive_mps) const {
-    const S x = effects.opening_m(drive_mps, parameters.gain_mps_per_V);
+    const S x = effects.opening_m(drive_mps, parameters.gain_mps_per_V, state.y_m);
     if (!effects.laps()) return x;
     const S lap = effects.underlap_m(parameters.gain_mps_per_V);
     return x + clamp(x, -lap, lap);

@@ -31,11 +31,12 @@ class EffectSet : public EffectStore<S, E...> {
     return least;
   }
 
-  [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V) const {
+  /// Behind a spool at `x_m`, the rod at `y_m`.
+  [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V, const S& y_m) const {
     this->template for_each_active<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       x_m = T::opening_m(p, x_m, gain_m_per_V);
     });
-    return apply_formulas<Site::opening>(x_m);
+    return apply_formulas<Site::opening>(x_m, y_m);
   }
 
   /// True when edges of the valve are open at null.
@@ -221,10 +222,10 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
-  /// Chains the formulas of a site behind its effects.
+  /// Chains the formulas of a site behind its effects; `second`: their other variable.
   template <Site kSite>
-  [[nodiscard]] S apply_formulas(const S& x) const {
-    return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x) : x;
+  [[nodiscard]] S apply_formulas(const S& x, const S& second = S(0.0)) const {
+    return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x, second) : x;
   }
 };
 

@@ -20,7 +20,7 @@ std::array<VariableRange, ExpressionProgram::kVariables> ranges_of(effects::Site
     case effects::Site::command:
       return {ranges.command_V, {}};
     case effects::Site::opening:
-      return {ranges.opening_m, {}};
+      return {ranges.opening_m, ranges.position_m};
     case effects::Site::flow:
       return {ranges.flow_m3ps, {}};
     case effects::Site::leakage:

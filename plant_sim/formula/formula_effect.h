@@ -18,7 +18,7 @@
 //
 // By site, the formula gives, from variables:
 //   command   the command to the valve, V              u_V
-//   opening   the valve opening from spool position    x_m (of velocity_servo: speed, m/s)
+//   opening   the valve opening from spool position    x_m (of velocity_servo: speed, m/s), y_m
 //   flow      the flow of one orifice, m3/s            q_m3ps
 //   leakage   what leaks from chamber i to o, m3/s     in_Pa, out_Pa
 //   force     a force against extension, N             y_m, v_mps
@@ -71,7 +71,7 @@ struct FormulaSite {
 
 inline constexpr std::array kFormulaSites = {
     FormulaSite{effects::Site::command, "u_out", {"u_V", ""}, true, 1e4},
-    FormulaSite{effects::Site::opening, "opening", {"x_m", ""}, true, 1e6},
+    FormulaSite{effects::Site::opening, "opening", {"x_m", "y_m"}, true, 1e6},
     FormulaSite{effects::Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
     FormulaSite{effects::Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
     FormulaSite{effects::Site::force, "F", {"y_m", "v_mps"}, false, 1e9},

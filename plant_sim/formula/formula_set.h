@@ -86,8 +86,8 @@ class FormulaSet {
   [[nodiscard]] bool acts_on(effects::Site site) const { return (sites_ & bit(site)) != 0; }
 
   /// Chained sites: applies the formulas to x one after the other.
-  [[nodiscard]] S chain(effects::Site site, S x) const {
-    each_active(site, [&](const Effect& effect) { x = effect.result(x, S(0.0), x); });
+  [[nodiscard]] S chain(effects::Site site, S x, const S& second) const {
+    each_active(site, [&](const Effect& effect) { x = effect.result(x, second, x); });
     return x;
   }
 

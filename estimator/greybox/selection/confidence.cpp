@@ -110,15 +110,17 @@ bool is_clear_of_error(const ParameterValue& p) {
   return !p.at_bound && std::abs(p.value) > kStandardErrors * p.std_error;
 }
 
-/// Doubt by the effect's size, its first parameter. Where that is zero, a refinement in its unit
-/// may be all there is: friction that falls to nothing while it slides.
+/// Doubt by the effect's size, its first parameter. Where that is zero or within its error, a
+/// refinement in its unit may be clear: friction at rest, of which a record cannot tell how far it
+/// falls while it slides.
 std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
   const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
   if (size == diagnosis.parameters.end() || is_clear_of_error(*size)) return {};
   const std::string unit = config::units::unit_of(size->name);
   const bool refined =
-      size->value == 0.0 && std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
+      (size->value == 0.0 || !size->at_bound) &&
+      std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
         return is_own(p) && config::units::unit_of(p.name) == unit && is_clear_of_error(p);
       });
   if (refined) return {};

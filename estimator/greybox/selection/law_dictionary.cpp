@@ -135,6 +135,18 @@ class Dictionary {
         fmt::format("x_m * (1 + slope_ratio * x_m / {})", full),
         {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)},
         {"u", "direction"});
+    add("gain_along_stroke", "gain that changes along the stroke", "opening",
+        fmt::format("x_m * (1 + slope_ratio * (y_m - {}) / {})", rounded(rig_.centre_m),
+                    rounded(rig_.length_m)),
+        {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"y"});
+    const double way_m = 4.0 * rig_.length_m;  // a sine moves by 2.8 of its RMS
+    add("gain_wave", "gain that goes up and down along the stroke", "opening",
+        "x_m * (1 + wave_ratio * sin(6.28318530718 * (y_m - rest_m) / period_m))",
+        {size("wave_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio),
+         {"period_m", "length of one period", rounded(0.1 * way_m), rounded(10.0 * way_m),
+          rounded(1.5 * way_m), rounded(2.0 * way_m)},
+         rest()},
+        {"y"});
   }
 
   void add_commands() {

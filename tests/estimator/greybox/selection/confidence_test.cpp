@@ -48,6 +48,11 @@ TEST(Confidence, AnEffectWhoseRefinementIsClearIsEstablishedWithoutItsFirstSize)
   EXPECT_THAT(named(d), ElementsAre("friction at_bound", "backlash within_error"));
   d.parameters[2] = {"friction.static_N", 11.4, 1.8, false};
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  // Coulomb's level not known, as the Stribeck speed is about the motion's own
+  d.parameters[1] = {"friction.coulomb_N", 19.0, 10.0, false};
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.parameters[2] = {"friction.static_N", 21.0, 12.0, false};
+  EXPECT_THAT(named(d), ElementsAre("friction within_error", "backlash within_error"));
 }
 
 TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
