@@ -70,23 +70,6 @@ std::string shared_site(const std::vector<std::string>& effects) {
   return site;
 }
 
-/// True where a parameter of the plant has come to the end of its range, which it has not without
-/// the effects.
-bool strains_the_plant(const FitSummary& fitted, const FitSummary& without) {
-  const auto was_there = [&](const std::string& name) {
-    for (std::size_t i = 0; i < without.at_bound.size(); ++i) {
-      if (without.parameters[i].name == name) return without.at_bound[i] != 0;
-    }
-    return false;
-  };
-  for (std::size_t i = 0; i < fitted.at_bound.size(); ++i) {
-    if (fitted.at_bound[i] != 0 && !was_there(fitted.parameters[i].name) &&
-        fitted.parameters[i].name.find('.') == std::string::npos)
-      return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
@@ -104,17 +87,14 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
   // several effects may stand in for one law, at any site
-  const bool everywhere =
-      added.size() >= kStandIn ||
-      (added.size() > 1 &&
-       (innovations.physics_missing() || strains_the_plant(named.model.fitted, first.fitted)));
-  const std::string site = everywhere ? "" : shared_site(added);
-  if (!everywhere && (site.empty() || innovations.physics_missing())) return false;
+  const bool several = added.size() > 1;
+  const std::string site = several ? "" : shared_site(added);
+  if (!several && (site.empty() || innovations.physics_missing())) return false;
   // a search is worth it only where one law competes with the effect
-  if (added.size() == 1 && !law_competes(context, site, innovations)) return false;
+  if (!several && !law_competes(context, site, innovations)) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
-      search_laws(context, first, site, added.size() > 1 ? added : std::vector<std::string>());
+      search_laws(context, first, site, several ? added : std::vector<std::string>());
   return found && found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);

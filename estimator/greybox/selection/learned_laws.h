@@ -9,10 +9,9 @@ namespace estimator::greybox::selection {
 /// Takes laws where no effect explains the record and they leave clearly less.
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result);
 
-/// Takes a law where it is clearly likelier than the effects found, at the site that they share, or
-/// at any where several of them leave what follows the motion or need a plant's parameter at its
-/// bound: the nearest effects pass for a law that the library does not have. False: `result` is as
-/// before.
+/// Takes a law where it is clearly likelier than the effects found, at the site of a single one, or
+/// at any in place of several: the nearest effects pass for a law that the library does not have.
+/// False: `result` is as before.
 [[nodiscard]] bool prefer_law(const SearchContext& context, const ModelStage& first,
                               const InnovationSearch& innovations, Diagnosis& result);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/learned_laws.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -70,36 +71,62 @@ TEST(Laws, AGainThatCurvesIsLearnedWithItsSize) {
   EXPECT_NEAR(curvature * std::pow(2.0 * gain / full_mps, 2), -0.1, 0.003);
 }
 
-/// A search of the actuator's record that knows one effect of the library alone.
-struct OneEffect {
+/// A search of the actuator's record that knows these effects of the library alone.
+struct FewEffects {
   SearchContext context;
   InnovationSearch found;
 };
-OneEffect searched_with(const std::string& effect, const std::string& spec) {
-  OneEffect result{diagnose_test::context_of(spec, 31), {}};
+FewEffects searched_with(const std::vector<std::string>& effects, const std::string& spec) {
+  FewEffects result{diagnose_test::context_of(spec, 31), {}};
   SearchContext only = result.context;
-  std::erase_if(only.problem.candidate_effects,
-                [&](const plant_sim::EffectInfo& one) { return one.name != effect; });
+  std::erase_if(only.problem.candidate_effects, [&](const plant_sim::EffectInfo& one) {
+    return std::find(effects.begin(), effects.end(), one.name) == effects.end();
+  });
   result.found = search_innovations(only, first_stage(only), {});
   return result;
 }
 
 TEST(Laws, ALawCompetesWithTheEffectThatPassesForIt) {
-  const OneEffect cubic =
-      searched_with("quadratic_damping",
+  const FewEffects cubic =
+      searched_with({"quadratic_damping"},
                     "motion=multisine,length_s=15,left_out=cubic_damping,outside.force_N=10");
   ASSERT_THAT(cubic.found.final.model.added, ElementsAre("quadratic_damping"));
   EXPECT_TRUE(law_competes(cubic.context, "force", cubic.found));
 }
 
 TEST(Laws, NoLawCompetesWithTheRightEffect) {
-  const OneEffect quadratic =
-      searched_with("quadratic_damping",
+  const FewEffects quadratic =
+      searched_with({"quadratic_damping"},
                     "motion=multisine,length_s=15,quadratic_damping.coefficient_N_s2_per_m2=18000,"
                     "outside.force_N=10");
   ASSERT_THAT(quadratic.found.final.model.added, ElementsAre("quadratic_damping"));
   EXPECT_FALSE(law_competes(quadratic.context, "force", quadratic.found));
   EXPECT_FALSE(law_competes(quadratic.context, "sensor", quadratic.found));
+}
+
+// A force one way and a gain that differs by direction pass for it together.
+TEST(Laws, ALawIsLearnedInPlaceOfTwoEffectsElsewhere) {
+  FewEffects two = searched_with(
+      {},
+      "motion=chirp,length_s=15,left_out=direction_damping,left_out.size=560,outside.force_N=5");
+  two.found.final.model.added = {"load_force", "flow_asymmetry"};  // that explain nothing
+  Diagnosis d;
+  d.noise_floor_m = two.context.problem.data.noise_floor_m;
+  ASSERT_TRUE(prefer_law(two.context, first_stage(two.context), two.found, d));
+  EXPECT_THAT(names_of(d.laws), ElementsAre("direction_damping"));
+  EXPECT_NEAR(*d.better.value("direction_damping.coefficient_N_s_per_m"), 560.0, 60.0);
+}
+
+TEST(Laws, AGainThatChangesAlongTheStrokeIsLearned) {
+  const SearchContext context = servo_context({.rate_mps = [](double u_V, double y_m, double) {
+    return kServoGain * u_V * (1.0 + 0.1 * y_m / 0.1);
+  }});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  ASSERT_EQ(d.laws.size(), 1U);
+  EXPECT_EQ(d.laws.front().effect.site, "opening");
+  EXPECT_THAT(d.laws.front().variables, ElementsAre("y"));
+  EXPECT_LT(d.rms_after_m, 1.15 * d.noise_floor_m);
 }
 
 TEST(Laws, LibraryEffectsBesideLawsKeepTheSizesOfTheRig) {
