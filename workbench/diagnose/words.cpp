@@ -115,9 +115,15 @@ std::string possible_words(const selection::PossibleEffect& possible) {
          " (may stand in for another law: what remains enters as it does, or several share it)";
 }
 
-std::string refused_words(const selection::RefusedModel& model) {
+/// `taken`: the effects of the better model.
+std::string refused_words(const selection::RefusedModel& model,
+                          const std::vector<std::string>& taken) {
+  const bool part =
+      std::all_of(model.effects.begin(), model.effects.end(), [&](const std::string& effect) {
+        return std::find(taken.begin(), taken.end(), effect) != taken.end();
+      });
   const std::string what = "Not taken: " + config::schema::joined(model.effects, " + ") +
-                           ", which would leave " +
+                           (part ? " alone" : "") + ", which would leave " +
                            config::units::length_words(model.validation_rms_m);
   switch (model.why) {
     case selection::Refusal::unsupported:
@@ -259,7 +265,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
         "Not established: " + config::schema::joined_by(d.possible, possible_words, ", ") + ".");
   }
   for (const selection::RefusedModel& model : d.search.refused) {
-    out.push_back(refused_words(model));
+    out.push_back(refused_words(model, d.missing));
   }
   add_rivals(d, out);
   const std::string held = held_words(outcome);
