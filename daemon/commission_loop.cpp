@@ -9,7 +9,7 @@
 namespace monitor {
 namespace {
 
-constexpr std::int64_t kLead_ns = 20'000'000;
+constexpr std::int64_t kFirstPeriod_ns = 20'000'000;
 /// An outage this long aborts the stage.
 constexpr double kStoodStill_s = 0.1;
 constexpr std::chrono::milliseconds kStuck{1000};
@@ -31,7 +31,7 @@ CommissionLoop::CommissionLoop(const Parts& parts, control::Commissioning& proce
     : parts_(parts),
       procedure_(procedure),
       virtual_time_(virtual_time),
-      grid_(parts.clock.now_ns() + (virtual_time ? 0 : kLead_ns),
+      grid_(parts.clock.now_ns() + (virtual_time ? 0 : kFirstPeriod_ns),
             std::llround(parts.sample_time_s * 1e9)),
       aux_inputs_(&parts.devices.inputs, parts.max_bad_in_a_row, stats_),
       start_s_(seconds(parts.clock.now_ns())) {}

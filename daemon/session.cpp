@@ -34,7 +34,7 @@ namespace {
 
 /// Delay from the end of opening to the first period.
 constexpr std::int64_t kLead_ns = 20'000'000;
-constexpr std::int64_t kCommandLife_ns = 1'000'000'000;
+constexpr std::int64_t kAutoStartLife_ns = 1'000'000'000;
 
 template <class Named>
 std::vector<std::string> ids_of(const std::vector<Named>& devices) {
@@ -297,7 +297,7 @@ void Session::run() {
   const double sample_time_s = prepared_.sample_time_s;
   const std::int64_t start_ns = clock_.now_ns() + (virtual_time_ ? 0 : kLead_ns);
   if (config_.loop.auto_arm && valve_ != nullptr) {
-    arm_and_start(commands_, start_ns + kCommandLife_ns);
+    arm_and_start(commands_, start_ns + kAutoStartLife_ns);
   }
   const std::int64_t ticks =
       options_.duration_s > 0.0 ? std::llround(options_.duration_s / sample_time_s) : rt::kForever;

@@ -59,26 +59,26 @@ Complex response(const Biquad& q, Complex z) {
   return (q.b0 + w * (q.b1 + w * q.b2)) / (1.0 + w * (q.a1 + w * q.a2));
 }
 
-void check(bool good, const std::string& what) {
+void require(bool good, const std::string& what) {
   if (!good) throw config::schema::UsageError("filter: " + what);
 }
 
 }  // namespace
 
 Filter::Filter(const FilterDesign& design) {
-  check(design.order >= 1 && design.order <= kMaxSections,
-        "order " + std::to_string(design.order) + "; allowed: 1 to 8");
-  check(design.sample_Hz > 0.0 && std::isfinite(design.sample_Hz),
-        "sample_Hz " + std::to_string(design.sample_Hz) + "; allowed: above 0");
+  require(design.order >= 1 && design.order <= kMaxSections,
+          "order " + std::to_string(design.order) + "; allowed: 1 to 8");
+  require(design.sample_Hz > 0.0 && std::isfinite(design.sample_Hz),
+          "sample_Hz " + std::to_string(design.sample_Hz) + "; allowed: above 0");
   const auto corner = [&](const char* name, double value_Hz) {
-    check(value_Hz > 0.0 && value_Hz < design.sample_Hz / 2.0,
-          std::string(name) + " " + std::to_string(value_Hz) + "; allowed: above 0, below " +
-              std::to_string(design.sample_Hz / 2.0));
+    require(value_Hz > 0.0 && value_Hz < design.sample_Hz / 2.0,
+            std::string(name) + " " + std::to_string(value_Hz) + "; allowed: above 0, below " +
+                std::to_string(design.sample_Hz / 2.0));
   };
   if (design.band != Band::low_pass) corner("low_Hz", design.low_Hz);
   if (design.band != Band::high_pass) corner("high_Hz", design.high_Hz);
   if (design.band == Band::band_pass) {
-    check(design.low_Hz < design.high_Hz, "low_Hz must be below high_Hz");
+    require(design.low_Hz < design.high_Hz, "low_Hz must be below high_Hz");
   }
   // Frequency of unit gain: DC, the Nyquist frequency, or the middle of the (warped) band.
   Complex reference(1.0, 0.0);

@@ -43,15 +43,15 @@ void absorb(double* factor, double* row, double weight, int first) noexcept {
 }
 
 template <int... kIndex>
-constexpr std::array<AbsorbRow, sizeof...(kIndex)> table(
+constexpr std::array<AbsorbRow, sizeof...(kIndex)> absorb_table(
     std::integer_sequence<int, kIndex...> /*columns less one*/) {
   return {&absorb<kIndex + 1>...};
 }
 
-constexpr auto kTable = table(std::make_integer_sequence<int, kMaxColumns>{});
+constexpr auto kAbsorbTable = absorb_table(std::make_integer_sequence<int, kMaxColumns>{});
 
 }  // namespace
 
-AbsorbRow absorb_row(int columns) noexcept { return kTable[columns - 1]; }
+AbsorbRow absorb_row(int columns) noexcept { return kAbsorbTable[columns - 1]; }
 
 }  // namespace estimator

@@ -38,7 +38,7 @@ class Gate {
   ExcitationRange before_;
 };
 
-void check(bool good, const std::string& what) {
+void refuse_unless(bool good, const std::string& what) {
   if (!good) throw config::schema::UsageError(what);
 }
 
@@ -158,16 +158,18 @@ struct Recursive::State {
 };
 
 Recursive::Recursive(const RecursiveConfig& config) {
-  check(config.forgetting > 0.0 && config.forgetting <= 1.0,
-        "recursive: forgetting " + std::to_string(config.forgetting) + "; allowed: above 0, to 1");
-  check(std::isfinite(config.prior_variance) && config.prior_variance > 0.0,
-        "recursive: prior_variance " + std::to_string(config.prior_variance) +
-            "; allowed: above 0, finite");
-  check(config.warmup == 0 || config.warmup > config.structure.size(),
-        "recursive: warmup " + std::to_string(config.warmup) + " rows; allowed: 0 or more than " +
-            std::to_string(config.structure.size()));
-  check(config.gate_window >= 1, "recursive: gate_window " + std::to_string(config.gate_window) +
-                                     " samples; allowed: at least 1");
+  refuse_unless(
+      config.forgetting > 0.0 && config.forgetting <= 1.0,
+      "recursive: forgetting " + std::to_string(config.forgetting) + "; allowed: above 0, to 1");
+  refuse_unless(std::isfinite(config.prior_variance) && config.prior_variance > 0.0,
+                "recursive: prior_variance " + std::to_string(config.prior_variance) +
+                    "; allowed: above 0, finite");
+  refuse_unless(config.warmup == 0 || config.warmup > config.structure.size(),
+                "recursive: warmup " + std::to_string(config.warmup) +
+                    " rows; allowed: 0 or more than " + std::to_string(config.structure.size()));
+  refuse_unless(config.gate_window >= 1, "recursive: gate_window " +
+                                             std::to_string(config.gate_window) +
+                                             " samples; allowed: at least 1");
   state_ = std::make_unique<State>(config);
 }
 Recursive::~Recursive() = default;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "config/record/column_roles.h"
+#include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
 namespace config::record {
@@ -17,9 +18,7 @@ struct ColumnUnit {
   double factor;
 };
 
-constexpr double kPsi_Pa = 6894.757293168361;
-
-constexpr std::array kUnits{
+constexpr std::array kColumnUnits{
     ColumnUnit{"s", "s", 1.0},        ColumnUnit{"ms", "s", 1e-3},     ColumnUnit{"us", "s", 1e-6},
     ColumnUnit{"V", "V", 1.0},        ColumnUnit{"mV", "V", 1e-3},     ColumnUnit{"m", "m", 1.0},
     ColumnUnit{"cm", "m", 1e-2},      ColumnUnit{"mm", "m", 1e-3},     ColumnUnit{"um", "m", 1e-6},
@@ -33,7 +32,7 @@ constexpr std::array kUnits{
 RecordColumn parse_column(std::string_view name) {
   const std::size_t underscore = name.rfind('_');
   if (underscore != std::string_view::npos && underscore > 0) {
-    for (const ColumnUnit& unit : kUnits) {
+    for (const ColumnUnit& unit : kColumnUnits) {
       if (name.substr(underscore + 1) == unit.suffix) {
         const std::string stem(name.substr(0, underscore));
         return {stem, std::string(unit.si), stem + "_" + std::string(unit.si), unit.factor};

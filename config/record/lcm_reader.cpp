@@ -20,7 +20,7 @@ using messages::MessageKind;
 using schema::bad_data;
 using spoolwatch::sample_t;
 
-constexpr std::string_view kSyncWord = "\xED\xA1\xDA\x01";
+constexpr std::string_view kLogSignature = "\xED\xA1\xDA\x01";
 constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 
 /// The channel to read: the one named, or the only one of the right type.
@@ -107,7 +107,7 @@ class Builder final : public messages::MessageHandler {
 
 }  // namespace
 
-bool is_lcm_log(std::string_view head) noexcept { return head.starts_with(kSyncWord); }
+bool is_lcm_log(std::string_view head) noexcept { return head.starts_with(kLogSignature); }
 
 Record read_lcm_log(const std::string& file, std::string_view wanted) {
   const std::string channel = choose_channel(file, wanted);

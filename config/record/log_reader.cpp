@@ -9,7 +9,7 @@ namespace config::record {
 namespace {
 
 constexpr std::uint64_t kSyncWord = 0xEDA1DA01;
-constexpr std::size_t kHeaderBytes = 28;
+constexpr std::size_t kEventHeaderBytes = 28;
 
 std::uint64_t big_endian(const unsigned char* bytes, int count) {
   std::uint64_t out = 0;
@@ -26,12 +26,12 @@ LogReader::LogReader(const std::string& file) : file_(file), in_(file, std::ios:
 }
 
 const LogEvent* LogReader::next() {
-  std::array<unsigned char, kHeaderBytes> header{};
-  if (!in_.read(reinterpret_cast<char*>(header.data()), kHeaderBytes)) return nullptr;
+  std::array<unsigned char, kEventHeaderBytes> header{};
+  if (!in_.read(reinterpret_cast<char*>(header.data()), kEventHeaderBytes)) return nullptr;
   const auto channel_bytes = static_cast<std::int64_t>(big_endian(&header[20], 4));
   const auto data_bytes = static_cast<std::int64_t>(big_endian(&header[24], 4));
   const std::int64_t end =
-      complete_ + static_cast<std::int64_t>(kHeaderBytes) + channel_bytes + data_bytes;
+      complete_ + static_cast<std::int64_t>(kEventHeaderBytes) + channel_bytes + data_bytes;
   if (big_endian(header.data(), 4) != kSyncWord || end > size_ || data_bytes > INT32_MAX) {
     in_.setstate(std::ios::failbit);
     return nullptr;

@@ -7,19 +7,13 @@
 #include <fstream>
 #include <set>
 
+#include "config/record/text_fields.h"
 #include "config/schema/error.h"
 
 namespace config::record {
 namespace {
 
 using schema::UsageError;
-
-std::string trimmed(std::string_view text) {
-  const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return std::string(text);
-}
 
 bool is_key_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -48,7 +42,7 @@ void append_pairs(std::string_view line, const std::string& where, std::vector<M
   while (!trimmed(line).empty()) {
     const std::size_t length = key_length(line);
     if (length == 0) {
-      throw UsageError(where + ": '" + trimmed(line) +
+      throw UsageError(where + ": '" + std::string(trimmed(line)) +
                        "' is no pair; allowed: t=COLUMN,u=COLUMN,y=COLUMN, each with a [unit] "
                        "where the header has none");
     }
@@ -64,8 +58,8 @@ void append_pairs(std::string_view line, const std::string& where, std::vector<M
         break;
       }
     }
-    const std::string key = trimmed(line.substr(0, length - 1));
-    const std::string column = unquoted(trimmed(line.substr(length, end - length)));
+    const std::string key(trimmed(line.substr(0, length - 1)));
+    const std::string column = unquoted(std::string(trimmed(line.substr(length, end - length))));
     if (column.empty()) throw UsageError(fmt::format("{}: {} has no column", where, key));
     pairs.push_back({key, column});
     line = end < line.size() ? line.substr(end + 1) : std::string_view{};
@@ -88,7 +82,7 @@ std::vector<MapEntry> parse_map(const std::string& map) {
     }
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
-      const std::string text = trimmed(line);
+      const std::string_view text = trimmed(line);
       if (text.empty() || text.front() == '#') continue;
       append_pairs(text, map + ":" + std::to_string(number), pairs);
     }

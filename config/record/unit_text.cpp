@@ -16,7 +16,6 @@ struct KnownUnit {
 };
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kPsi_Pa = 6894.757293168361;
 constexpr double kInch_m = 0.0254;
 constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
 constexpr double kPoundForce_N = 4.4482216152605;

@@ -6,6 +6,8 @@
 
 namespace config::record {
 
+inline constexpr double kPsi_Pa = 6894.757293168361;
+
 struct UnitText {
   std::string text;     ///< as in the file, without brackets
   std::string si;       ///< ending of a column's name in SI: "m", "Pa", "m3ps", "rad", "pct"

@@ -12,7 +12,7 @@
 namespace config::schema {
 namespace {
 
-std::string shown(double value) {
+std::string rounded(double value) {
   constexpr int kDigits = 12;
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.*g", kDigits, value);
@@ -26,7 +26,7 @@ std::string allowed_in(T min, T max, T lowest, T highest) {
     if constexpr (std::is_integral_v<T>) {
       return std::to_string(value);
     } else {
-      return shown(value);
+      return rounded(value);
     }
   };
   if (min == lowest && max == highest) return "";
@@ -95,7 +95,7 @@ class ListingVisitor final : public Visitor {
         std::to_string(value));
   }
   void number(Key key, double& value, Range range) override {
-    add(key, "number", allowed_in(range), std::isnan(value) ? "" : shown(value));
+    add(key, "number", allowed_in(range), std::isnan(value) ? "" : rounded(value));
   }
   void text(Key key, std::string& value) override {
     const std::string before = value;
@@ -115,7 +115,7 @@ class ListingVisitor final : public Visitor {
         before.empty() ? "" : '"' + before + '"');
   }
   void numbers(Key key, std::vector<double>& value, Range range) override {
-    const std::string list = joined_by(value, shown);
+    const std::string list = joined_by(value, rounded);
     add(key, "numbers", allowed_in(range), list.empty() ? "" : '[' + list + ']');
   }
   void texts(Key key, std::vector<std::string>& value) override {

@@ -6,7 +6,7 @@ namespace monitor::control {
 namespace {
 
 /// Larger than any rounding error of times on the grid.
-constexpr double kRounding_s = 1e-9;
+constexpr double kRampRounding_s = 1e-9;
 
 }  // namespace
 
@@ -60,6 +60,8 @@ double Ramp::at(double t_s) const noexcept {
   return offset_V_ * (1.0 - std::max(0.0, t_s - begin_s_) / duration_s_);
 }
 
-bool Ramp::over(double t_s) const noexcept { return t_s - begin_s_ >= duration_s_ - kRounding_s; }
+bool Ramp::over(double t_s) const noexcept {
+  return t_s - begin_s_ >= duration_s_ - kRampRounding_s;
+}
 
 }  // namespace monitor::control

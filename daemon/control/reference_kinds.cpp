@@ -13,7 +13,7 @@ namespace {
 
 /// A time that is a whole number of holds up to rounding belongs to the new level: a tenth of a
 /// nanosecond is far above the rounding of t_s and far below any period.
-constexpr double kRounding_s = 1e-10;
+constexpr double kHoldRounding_s = 1e-10;
 
 /// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a stateless hash, so that any level is accessible.
 std::uint64_t mix(std::uint64_t x) noexcept {
@@ -45,7 +45,7 @@ double Steps::level_m(std::int64_t index) const noexcept {
 }
 
 double Steps::at(double t_s) const noexcept {
-  const double hold = std::floor((t_s + kRounding_s) / hold_s_);
+  const double hold = std::floor((t_s + kHoldRounding_s) / hold_s_);
   const auto index = static_cast<std::int64_t>(hold);
   const double t = t_s - hold * hold_s_;
   const double x = rise_s_ > 0.0 ? std::clamp(t / rise_s_, 0.0, 1.0) : 1.0;
@@ -70,7 +70,7 @@ Prbs::Prbs(const ReferenceConfig& config)
 }
 
 double Prbs::at(double t_s) const noexcept {
-  const auto index = static_cast<std::size_t>(std::floor((t_s + kRounding_s) / hold_s_));
+  const auto index = static_cast<std::size_t>(std::floor((t_s + kHoldRounding_s) / hold_s_));
   return centre_m_ + (bits_[index % bits_.size()] ? amplitude_m_ : -amplitude_m_);
 }
 

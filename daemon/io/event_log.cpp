@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01U;
 constexpr std::size_t kBatchBytes = 64 << 10;
-constexpr std::size_t kNumberAt = 4;  // offset of the event number in an event
 
 void put_big_endian(std::uint8_t* at, std::uint64_t value, int bytes) noexcept {
   for (int i = 0; i < bytes; ++i) at[i] = static_cast<std::uint8_t>(value >> (8 * (bytes - 1 - i)));

@@ -17,6 +17,8 @@ namespace monitor::io {
 
 /// Size of the header before an event's channel.
 inline constexpr std::size_t kEventHeader = 28;
+inline constexpr std::size_t kNumberAt = 4;     ///< offset of the event number in an event
+inline constexpr std::size_t kMaxChannel = 63;  ///< LCM's own limit
 
 /// Writes an event header with event number 0, a placeholder.
 void put_event_header(std::span<std::uint8_t, kEventHeader> header, std::int64_t utc_us,

@@ -15,7 +15,6 @@
 namespace monitor::io {
 namespace {
 
-constexpr std::size_t kMaxChannel = 63;
 constexpr std::size_t kQueueBytes = 4 << 20;
 /// Snapshot interval as a share of before_s, so that a folder is not much longer.
 constexpr double kStateShare = 0.5;

@@ -11,6 +11,7 @@
 
 #include "config/schema/hash.h"
 #include "daemon/io/audit.h"
+#include "daemon/io/event_log.h"
 
 namespace monitor::io {
 namespace {
@@ -21,7 +22,6 @@ using nlohmann::ordered_json;
 
 constexpr const char* kName = "alarm-";
 constexpr const char* kPartial = ".partial-";
-constexpr std::size_t kNumberAt = 4;  // offset of the event number in an event
 
 /// A file written with fsync; keeps the first error.
 class SyncedFile {

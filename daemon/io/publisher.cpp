@@ -6,6 +6,7 @@
 
 #include "config/messages/connect.h"
 #include "config/signals/sample.h"
+#include "daemon/io/event_log.h"
 #include "daemon/io/evidence.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/pipeline.h"
@@ -127,7 +128,6 @@ namespace {
 
 // Exceeds the largest message of an ordinary configuration; grows if necessary.
 constexpr std::size_t kBufferBytes = 16 << 10;
-constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
 }  // namespace
 

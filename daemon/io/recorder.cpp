@@ -17,7 +17,6 @@ namespace {
 // Drains until the next attempt after a disk failure: about 1 s, or 200 samples in virtual time.
 constexpr int kRetryBackground = 20;
 constexpr int kRetryInline = 200;
-constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
 bool means_full(int error) { return error == ENOSPC || error == EDQUOT || error == EFBIG; }
 

@@ -15,7 +15,7 @@ namespace {
 using config::schema::bad_data;
 
 constexpr double kEulerGamma = 0.57721566490153286;
-constexpr double kOneSided95 = 1.6449;
+constexpr double kQuantile95 = 1.6449;
 constexpr std::size_t kFewestBlocks = 10;
 constexpr std::size_t kEnoughBlocks = 20;
 constexpr double kWindowsPerBlock = 5.0;
@@ -50,7 +50,7 @@ double variance_factor(double y) { return 1.113 + 0.457 * y + 0.805 * y * y; }
 double limit_factor(std::size_t n, double y) {
   constexpr std::size_t kMany = 200;
   constexpr std::size_t kDraws = 4000;
-  if (n > kMany) return y + kOneSided95 * std::sqrt(variance_factor(y) / static_cast<double>(n));
+  if (n > kMany) return y + kQuantile95 * std::sqrt(variance_factor(y) / static_cast<double>(n));
   std::mt19937_64 random(n);
   std::vector<double> sample(n);
   std::vector<double> pivots(kDraws);
@@ -70,7 +70,7 @@ double limit_factor(std::size_t n, double y) {
 /// Blocks from which on the margin is widened by less than a tenth.
 double enough_blocks(double y) {
   constexpr double kSquare = 1.1 * 1.1 - 1.0;
-  const double ratio = kOneSided95 / (kSquare * y);
+  const double ratio = kQuantile95 / (kSquare * y);
   return std::ceil(ratio * ratio * variance_factor(y));
 }
 
@@ -88,8 +88,8 @@ double normal_quantile(double probability) {
 /// Upper 95 % confidence limit of that quantile from n normal values, in standard deviations from
 /// their mean (one-sided tolerance factor; Natrella, Experimental Statistics, 1963).
 double tolerance_factor(double n, double quantile) {
-  const double a = 1.0 - kOneSided95 * kOneSided95 / (2.0 * (n - 1.0));
-  const double b = quantile * quantile - kOneSided95 * kOneSided95 / n;
+  const double a = 1.0 - kQuantile95 * kQuantile95 / (2.0 * (n - 1.0));
+  const double b = quantile * quantile - kQuantile95 * kQuantile95 / n;
   return (quantile + std::sqrt(std::max(0.0, quantile * quantile - a * b))) / a;
 }
 

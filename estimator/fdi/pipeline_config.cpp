@@ -8,6 +8,7 @@
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/quantity.h"
 #include "estimator/fdi/snapshot.h"
+#include "estimator/fdi/trained.h"
 
 namespace estimator::fdi {
 namespace {
@@ -16,8 +17,6 @@ using config::schema::bad_config;
 using config::schema::Visitor;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Two sample times are the same within clock accuracy.
-constexpr double kSameSampleTime = 1e-3;
 constexpr double kLongest_s = 1e5;
 
 const EstimatorConfig* find(const std::vector<EstimatorConfig>& estimators, std::string_view id) {
@@ -174,7 +173,7 @@ void PipelineConfig::load_bands(const std::filesystem::path& folder, double samp
   }
   LearnedBands learned;
   config::schema::Document::load(file).read([&](Visitor& v) { learned.visit(v); });
-  if (std::abs(learned.sample_time_s - sample_time_s) > kSameSampleTime * sample_time_s) {
+  if (std::abs(learned.sample_time_s - sample_time_s) > kSameSampleTime_ratio * sample_time_s) {
     throw bad_config(file.string() + ": sample_time_s",
                      "bands were learned at " + std::to_string(learned.sample_time_s) +
                          " s, the samples come every " + std::to_string(sample_time_s) + " s",

@@ -14,7 +14,7 @@
 namespace estimator::fdi {
 namespace {
 
-constexpr double kLongest_s = 1e6;
+constexpr double kLongestWindow_s = 1e6;
 constexpr int kLeastUpdates = 40;  ///< per coefficient, before the estimates are valid
 
 structures::RecursiveOptions options_of(const PolynomialConfig& config) {
@@ -148,8 +148,8 @@ void PolynomialConfig::visit(config::schema::Visitor& v) {
   v.number({"forgetting", "per sample"}, forgetting, {0.5, 1.0});
   v.number({"prior_variance", "P(0) = C I"}, prior_variance, {1e-12, 1e15});
   v.number({"window_s", "window of the validity checks"}, window_s, {1e-3, 3600.0});
-  v.number({"stride_s", "time between estimates"}, stride_s, {1e-4, kLongest_s});
-  v.number({"warmup_s", "no band acts before"}, warmup_s, {0.0, kLongest_s});
+  v.number({"stride_s", "time between estimates"}, stride_s, {1e-4, kLongestWindow_s});
+  v.number({"warmup_s", "no band acts before"}, warmup_s, {0.0, kLongestWindow_s});
   v.number({"min_u_rms_V", "less command is not excited"}, min_u_rms_V, {0.0, 1e3});
   v.number({"max_saturated", "share of saturated samples in a window"}, max_saturated, {0.0, 1.0});
   v.number({"max_missing", "share of missing samples in a window"}, max_missing, {0.0, 1.0});

@@ -19,9 +19,6 @@ using config::schema::bad_config;
 using config::schema::joined;
 using config::schema::Visitor;
 
-/// Two sample times are the same within clock accuracy.
-constexpr double kSameSampleTime = 1e-3;
-
 std::string seconds(double s) { return fmt::format("{:.6g} s", s); }
 
 /// `at`: chain of methods visited; circular reads are refused elsewhere.
@@ -102,7 +99,7 @@ void TrainedMethodConfig::load(const ConfigLoadContext& context) {
         "a file trained on this rig");
   }
   if (std::abs(trained.sample_time_s - context.sample_time_s) >
-      kSameSampleTime * context.sample_time_s) {
+      kSameSampleTime_ratio * context.sample_time_s) {
     throw bad_config(name + ": sample_time_s",
                      "was trained at " + seconds(trained.sample_time_s) +
                          ", the samples come every " + seconds(context.sample_time_s),

@@ -28,6 +28,9 @@ struct TrainedClass {
   void visit(config::schema::Visitor& v);
 };
 
+/// Two sample times are the same within clock accuracy.
+inline constexpr double kSameSampleTime_ratio = 1e-3;
+
 /// [[trained]]: training result of one method.
 struct TrainedMethod {
   std::string id;

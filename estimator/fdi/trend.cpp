@@ -12,9 +12,9 @@ namespace {
 
 using config::schema::bad_config;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr double kNotByChance = 3.5;
-constexpr double kGone = 2.0;
+constexpr double kReturned = 2.0;
 
 class Trend final : public BlockMethod {
  public:
@@ -60,12 +60,12 @@ class Trend final : public BlockMethod {
   [[nodiscard]] double time_to_limit_s() const noexcept {
     const double limit = trend_.slope() > 0.0 ? config_.high : config_.low;
     const double time_s = (limit - trend_.level()) / trend_.slope();
-    return std::isnan(time_s) ? kInfinity : std::max(time_s, 0.0);
+    return std::isnan(time_s) ? kUnlimited : std::max(time_s, 0.0);
   }
   void take(std::span<const double> means) noexcept override {
     trend_.add(means[0], interval_s());
     const double certain = std::abs(trend_.slope()) / trend_.slope_error();
-    out_ = trend_.seen() > 2 && certain > (out_ ? kGone : kNotByChance) &&
+    out_ = trend_.seen() > 2 && certain > (out_ ? kReturned : kNotByChance) &&
            time_to_limit_s() < config_.horizon_s;
   }
   void show(std::span<EstimatedValue> values) const noexcept override {
@@ -144,7 +144,7 @@ void TrendConfig::visit(config::schema::Visitor& v) {
   visit_trained(v);
   v.text({"quantity", "monitored quantity", true}, quantity);
   v.number({"std_dev", "standard deviation of its block means, autocorrelation included"}, std_dev,
-           {1e-300, kInfinity});
+           {1e-300, kUnlimited});
   v.number({"memory_s", "memory of the trend"}, memory_s, {1e-3, 1e9});
   v.number({"horizon_s", "a limit reached sooner raises the alarm"}, horizon_s, {1e-3, 1e10});
   v.number({"low", "limit below, in the quantity's unit"}, low);

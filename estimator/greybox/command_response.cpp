@@ -19,7 +19,7 @@ constexpr double kFinest_s = 2.5e-3;
 constexpr std::size_t kMostSamples = 30'000;
 constexpr std::size_t kLeastSamples = 200;
 constexpr std::size_t kLeastWindows = 60;
-constexpr std::size_t kWidest = 64;
+constexpr std::size_t kMostLags = 64;
 constexpr double kLongestShift_s = 1.0;
 /// A shift is reported where it leaves that little of the command unexplained, ...
 constexpr double kLeastCorrelation = 0.97;
@@ -33,14 +33,15 @@ constexpr Index kLeastLead = 2;
 constexpr Index kLeastDelay = 5;
 constexpr double kLeastDelay_s = 0.05;
 
-struct Samples {
+struct CommandSamples {
   double sample_time_s = 0.0;
   VectorXd u, y;
 };
 
 /// The longest segment, thinned by means to kFinest_s.
-Samples longest_segment(double sample_time_s, const std::vector<double>& u_V,
-                        const std::vector<double>& y_m, const std::vector<std::size_t>& starts) {
+CommandSamples longest_segment(double sample_time_s, const std::vector<double>& u_V,
+                               const std::vector<double>& y_m,
+                               const std::vector<std::size_t>& starts) {
   std::size_t from = 0;
   std::size_t to = 0;
   std::size_t begin = 0;
@@ -55,7 +56,7 @@ Samples longest_segment(double sample_time_s, const std::vector<double>& u_V,
   close(u_V.size());
   const auto each = std::max<std::size_t>(1, static_cast<std::size_t>(kFinest_s / sample_time_s));
   const std::size_t count = std::min((to - from) / each, kMostSamples);
-  Samples out;
+  CommandSamples out;
   out.sample_time_s = sample_time_s * static_cast<double>(each);
   out.u = VectorXd::Zero(static_cast<Index>(count));
   out.y = out.u;
@@ -81,7 +82,7 @@ VectorXd moving_mean(const VectorXd& x, Index width) {
 struct Smoothed {
   VectorXd u, y, v;
 
-  Smoothed(const Samples& samples, Index width) {
+  Smoothed(const CommandSamples& samples, Index width) {
     const auto smooth = [width](const VectorXd& x) {
       return moving_mean(moving_mean(x, width), width);
     };
@@ -144,7 +145,7 @@ CommandResponse command_response(double sample_time_s, const std::vector<double>
                                  const std::vector<double>& y_m,
                                  const std::vector<std::size_t>& starts) {
   CommandResponse response;
-  const Samples samples = longest_segment(sample_time_s, u_V, y_m, starts);
+  const CommandSamples samples = longest_segment(sample_time_s, u_V, y_m, starts);
   const auto count = static_cast<std::size_t>(samples.u.size());
   if (count < kLeastSamples) return response;
   const auto most = std::min(static_cast<Index>(kLongestShift_s / samples.sample_time_s),
@@ -152,7 +153,7 @@ CommandResponse command_response(double sample_time_s, const std::vector<double>
   double best = 0.0;
   Index width = 1;
   std::vector<double> c;
-  for (std::size_t w = 1; w <= kWidest && count / w >= kLeastWindows; w *= 2) {
+  for (std::size_t w = 1; w <= kMostLags && count / w >= kLeastWindows; w *= 2) {
     const Smoothed smoothed(samples, static_cast<Index>(w));
     std::vector<double> found = correlations(smoothed, most);
     const double at_once = found[static_cast<std::size_t>(most)];

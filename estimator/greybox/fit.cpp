@@ -12,7 +12,7 @@ namespace estimator::greybox {
 namespace {
 
 constexpr double kDifference = 1e-3;  ///< step of the difference quotients, in search units
-constexpr double kSameSigma = 1.2;
+constexpr double kSettledSigma = 1.2;
 
 }  // namespace
 
@@ -108,8 +108,8 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
     result.evaluations += solution.evaluations;
     const double sigma_m = problem.sigma;
     problem.sigma = sigma_of(solution.residual);
-    const bool last = pass + 1 == options.passes || (problem.sigma < kSameSigma * sigma_m &&
-                                                     sigma_m < kSameSigma * problem.sigma);
+    const bool last = pass + 1 == options.passes || (problem.sigma < kSettledSigma * sigma_m &&
+                                                     sigma_m < kSettledSigma * problem.sigma);
     theta = solution.x;
     how.start_residual = solution.residual;
     how.start_jacobian = solution.jacobian;

@@ -11,14 +11,14 @@
 namespace estimator::greybox {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 void widen_to_full_range(CatalogueParameter& known) {
   FreeParameter& p = known.free;
   p.prior_mean = 0.0;
-  p.prior_sd = kInfinite;
+  p.prior_sd = kUnbounded;
   if (p.scale == ParameterScale::logarithmic) {
     p.lower = known.info.min > 0.0 ? std::log(known.info.min / p.unit) : -20.0;
     p.upper = std::log(known.info.max / p.unit);

@@ -16,8 +16,12 @@
 
 namespace estimator::nonlinear {
 
+/// 95 % quantile of chi-squared with one degree of freedom: rise of the cost at the ends of an
+/// interval.
+inline constexpr double kProfile95 = 3.841458820694124;
+
 struct ProfileOptions {
-  double threshold = 3.841458820694124;
+  double threshold = kProfile95;
   double inflation = 1.0;    ///< Covariance::inflation of the unknown: sigma wrong, or colour
   double first_step = 0.0;   ///< initial step, e.g. two standard errors; 0: from the Jacobian
   int max_points = 12;       ///< to each side

@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep =
+constexpr double kPredictionStep =
     1e-8;  // step of a coefficient about 1; w of an integrator is n times as sensitive
 constexpr int kRowsPerCoefficient = 3;
 constexpr double kTolerance = 1e-9;
@@ -32,9 +32,9 @@ nonlinear::Problem problem_of(const Orders& orders, const Stretches& data) {
   for (int j = 0; j < orders.size(); ++j) {
     nonlinear::Unknown unknown;
     unknown.relative_step = 0.0;
-    unknown.step = kStep;
-    if (j >= orders.a && j < orders.a + orders.b) unknown.step = kStep * y / u;
-    if (orders.constant && j == orders.size() - 1) unknown.step = kStep * y;
+    unknown.step = kPredictionStep;
+    if (j >= orders.a && j < orders.a + orders.b) unknown.step = kPredictionStep * y / u;
+    if (orders.constant && j == orders.size() - 1) unknown.step = kPredictionStep * y;
     out.unknowns.push_back(unknown);
   }
   out.evaluate = [orders, &data, first](const MatrixXd& points, MatrixXd& residuals) {

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRank = 1e-11;
+constexpr double kSubspaceRank = 1e-11;
 
 /// Past vectors, futures and the samples between, stacked over the stretches; u and y scaled to
 /// RMS 1. Rows are times.
@@ -66,7 +66,7 @@ MatrixXd regress(MatrixXd x, const MatrixXd& targets) {
   for (double& value : length) value = value > 0.0 ? value : 1.0;
   x = x * length.cwiseInverse().asDiagonal();
   return length.cwiseInverse().asDiagonal() *
-         linear_algebra::shortest_least_squares(x, targets, kRank);
+         linear_algebra::shortest_least_squares(x, targets, kSubspaceRank);
 }
 
 MatrixXd with_ones(const MatrixXd& x, bool constant) {
@@ -123,7 +123,7 @@ std::vector<double> numerator(const SubspaceFit& fit, const VectorXd& input,
   return out;
 }
 
-double condition_of(MatrixXd x) {
+double scaled_condition(MatrixXd x) {
   for (Index j = 0; j < x.cols(); ++j) x.col(j) /= std::max(x.col(j).norm(), 1e-300);
   const VectorXd s = linear_algebra::singular_values(linear_algebra::upper_triangle(x));
   return s[0] / s[s.size() - 1];
@@ -151,7 +151,7 @@ SubspaceFit fit_subspace(const SubspaceOptions& o, const Stretches& all) {
   }
   const Windows w = windows_of(o, data);
   out.samples = static_cast<int>(w.y.size());
-  out.condition = condition_of(w.past);
+  out.condition = scaled_condition(w.past);
 
   // Theta P has the left singular vectors of Theta R', P' = Q R: small matrices.
   const MatrixXd theta = prediction_map(o, w);

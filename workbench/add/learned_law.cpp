@@ -13,7 +13,7 @@ using config::schema::UsageError;
 using nlohmann::ordered_json;
 using plant_sim::formula::FormulaEffect;
 
-constexpr const char* kOption = "--law";
+constexpr const char* kLawOption = "--law";
 
 /// The laws of a diagnosis. Throws DataError for another file.
 ordered_json laws_in(const std::string& file) {
@@ -50,7 +50,7 @@ AddedEffect add_law(const std::string& file, const std::string& diagnosis, int n
   const auto count = static_cast<int>(laws.size());
   if (number < 1 || number > count) {
     throw UsageError(error_line(
-        kOption,
+        kLawOption,
         "is " + std::to_string(number) + ", but " + diagnosis + " has " +
             (count == 0 ? "no law" : std::to_string(count) + " laws"),
         count == 0 ? "a diagnosis with the verdict learned" : "1 to " + std::to_string(count)));
@@ -64,7 +64,7 @@ AddedEffect add_law(const std::string& file, const std::string& diagnosis, int n
                    "what `spoolwatch diagnose --json` of this version writes");
   }
   if (!name.empty()) effect.name = name;
-  require_site(model, effect.site, kOption);
+  require_site(model, effect.site, kLawOption);
   for (const std::string& text : assignments) {
     const Assignment one = parse_assignment(text);
     std::size_t i = 0;
@@ -75,7 +75,7 @@ AddedEffect add_law(const std::string& file, const std::string& diagnosis, int n
     }
     values[i] = one.value;
   }
-  return declared(std::move(model), effect, values, kOption);
+  return declared(std::move(model), effect, values, kLawOption);
 }
 
 }  // namespace workbench::add

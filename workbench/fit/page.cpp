@@ -8,6 +8,7 @@
 #include "config/schema/joined.h"
 #include "config/signals/nan.h"
 #include "config/units/quantity.h"
+#include "estimator/nonlinear/profile.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/record_section.h"
 
@@ -19,7 +20,6 @@ using present::add_series;
 using present::Plot;
 using present::Section;
 using present::Tone;
-constexpr double kThreshold = 3.841458820694124;
 
 std::string file_name(const std::string& file) {
   return std::filesystem::path(file).filename().string();
@@ -168,12 +168,13 @@ Section profile_section(const greybox::EstimationSummary& e) {
     series.name = "profile";
     series.tone = Tone::model;
     for (const auto& point : p.profile) {
-      if (!std::isfinite(point.value) || point.rise > 5.0 * kThreshold) continue;
+      if (!std::isfinite(point.value) || point.rise > 5.0 * estimator::nonlinear::kProfile95)
+        continue;
       plot.x_values.push_back(point.value);
       series.y.push_back(point.rise);
     }
     plot.series.push_back(series);
-    plot.lines.push_back({kThreshold, "95 %"});
+    plot.lines.push_back({estimator::nonlinear::kProfile95, "95 %"});
     plot.caption = to_string(p.doubt);
     section.plots.push_back(plot);
   }

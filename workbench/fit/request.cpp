@@ -134,7 +134,7 @@ void choose_profiles(const FitRequest& request, const greybox::EstimationProblem
   }
 }
 
-std::string shown(double value) { return fmt::format("{:.9g}", value); }
+std::string precise(double value) { return fmt::format("{:.9g}", value); }
 
 }  // namespace
 
@@ -165,8 +165,8 @@ PreparedFit prepare(const FitRequest& request) {
       out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
-      throw UsageError("--observer: is too fast for samples every " + shown(record.sample_time_s) +
-                       " s; allowed: below 1 / sample time");
+      throw UsageError("--observer: is too fast for samples every " +
+                       precise(record.sample_time_s) + " s; allowed: below 1 / sample time");
     }
   }
   out.noise_floor_m = problem.data.noise_floor_m;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "config/units/quantity.h"
+#include "estimator/nonlinear/profile.h"
 #include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
@@ -13,7 +14,6 @@ namespace {
 constexpr std::size_t kColumns = 92;
 constexpr int kPlotWidth = 61;
 constexpr int kPlotHeight = 6;
-constexpr double kThreshold = 3.841458820694124;
 
 std::string wrapped(const std::string& text, const std::string& indent) {
   std::string out;
@@ -84,7 +84,7 @@ std::string plot(const greybox::EstimatedParameter& p) {
     const double sign_a = a.value < p.value ? -1.0 : 1.0;
     const double sign_b = b.value <= p.value ? -1.0 : 1.0;
     const double z = sign_a * root(a.rise) * (1.0 - part) + sign_b * root(b.rise) * part;
-    const double height = z * z / (2.0 * kThreshold) * kPlotHeight;
+    const double height = z * z / (2.0 * estimator::nonlinear::kProfile95) * kPlotHeight;
     if (height > kPlotHeight + 0.5) continue;
     rows[static_cast<std::size_t>(kPlotHeight - std::lround(height))][static_cast<std::size_t>(c)] =
         '*';

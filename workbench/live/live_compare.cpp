@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "config/schema/error.h"
+#include "config/signals/quality.h"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/online_residual.h"
@@ -13,8 +14,6 @@
 
 namespace workbench::live {
 namespace {
-
-constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 
 void say(const std::string& line) { std::cerr << "spoolwatch compare: " << line << std::endl; }
 
@@ -27,7 +26,8 @@ class Watcher final : public FeedListener {
         terminal_(!options.json && isatty(STDOUT_FILENO) == 1) {}
 
   void on(const spoolwatch::sample_t& s) override {
-    if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+    if (config::signals::is_stale(s.quality) || !std::isfinite(s.y_m) ||
+        !std::isfinite(s.u_applied_V)) {
       return;
     }
     residual_.add(s.tick, s.sample_time_s, s.u_applied_V, s.y_m);

@@ -9,12 +9,11 @@
 #include <iterator>
 
 #include "config/schema/error.h"
+#include "config/signals/quality.h"
 #include "spoolwatch/sample_t.hpp"
 
 namespace workbench::live {
 namespace {
-
-constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 
 void append(std::string& text, double value) {
   if (!text.empty()) text += ',';
@@ -40,7 +39,8 @@ void SampleFile::fail() const {
 }
 
 void SampleFile::add(const spoolwatch::sample_t& s) {
-  if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+  if (config::signals::is_stale(s.quality) || !std::isfinite(s.y_m) ||
+      !std::isfinite(s.u_applied_V)) {
     ++unusable_;
     return;
   }

@@ -4,11 +4,18 @@
 #include <iostream>
 
 #include "config/record/whole_file.h"
+#include "workbench/present/text.h"
 
 namespace workbench::present {
 
 nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json typeset_all(const std::vector<std::string>& lines) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const std::string& line : lines) all.push_back(typeset(line));
+  return all;
 }
 
 bool write_json(const std::string& json, const std::string& file) {

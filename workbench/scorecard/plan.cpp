@@ -146,8 +146,6 @@ config::schema::UsageError not_in_plan(const std::string& what, const std::strin
   return config::schema::UsageError(what + ": is not in the plan; allowed: " + allowed);
 }
 
-constexpr double kHour_s = 3600.0;
-
 template <class T>
 void check(const char* option, const std::vector<std::string>& asked, const std::vector<T>& items) {
   std::vector<std::string> names;

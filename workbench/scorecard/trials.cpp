@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kHour_s = 3600.0;
-
 double processor_s() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

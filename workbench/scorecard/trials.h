@@ -27,6 +27,8 @@
 
 namespace workbench::scorecard {
 
+inline constexpr double kHour_s = 3600.0;
+
 /// Share of the trials of a size that must be detected.
 inline constexpr double kDetected = 0.95;
 

@@ -21,15 +21,10 @@ namespace {
 using nlohmann::ordered_json;
 using present::number_or_null;
 using present::typeset;
+using present::typeset_all;
 namespace selection = estimator::greybox::selection;
 
 std::string length(double value_m) { return typeset(config::units::length_words(value_m)); }
-
-ordered_json typeset_all(const std::vector<std::string>& lines) {
-  ordered_json out = ordered_json::array();
-  for (const std::string& line : lines) out.push_back(typeset(line));
-  return out;
-}
 
 /// The candidates of all rounds with the error that each would reach.
 ordered_json candidates_of(const selection::Diagnosis& diagnosis) {

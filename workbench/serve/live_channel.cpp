@@ -13,6 +13,7 @@
 
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
+#include "config/signals/quality.h"
 #include "plant_sim/model_file.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
@@ -38,7 +39,6 @@ constexpr std::chrono::seconds kRetry{1};
 constexpr double kHistory_s = 60.0;
 constexpr std::size_t kMostPoints = 60 * 1000;  ///< a kilohertz for the whole history
 constexpr std::uint64_t kMostBatch = 4000;      ///< points; some 200 kB of text
-constexpr std::int8_t kStaleQuality = 2;        ///< and 3, bad: no new reading
 constexpr std::size_t kMostSources = 50;
 
 double seconds_since(Clock::time_point then) {
@@ -50,7 +50,7 @@ class LiveListener final : public live::FeedListener {
   void on(const spoolwatch::sample_t& s) override {
     came_ = Clock::now();
     state_ = s.state;
-    const bool good = s.quality < kStaleQuality && std::isfinite(s.y_m);
+    const bool good = !config::signals::is_stale(s.quality) && std::isfinite(s.y_m);
     LivePoint point{static_cast<double>(s.utc_us) * 1e-6,
                     s.reference_m,
                     good ? s.y_m : kNaN,

@@ -8,7 +8,7 @@ namespace workbench::serve {
 namespace {
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
-constexpr const char* kScript = "text/javascript; charset=utf-8";
+constexpr const char* kScriptType = "text/javascript; charset=utf-8";
 constexpr const char* kSheet = "text/css; charset=utf-8";
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr std::string_view kIcon =
@@ -25,21 +25,21 @@ struct Entry {
 
 constexpr std::array kEntries{Entry{"/", kHtml, page_index},
                               Entry{"/style.css", kSheet, page_sheet},
-                              Entry{"/app.js", kScript, page_app},
-                              Entry{"/server.js", kScript, page_server},
-                              Entry{"/plots.js", kScript, page_plots},
-                              Entry{"/workbench.js", kScript, page_workbench},
-                              Entry{"/sliders.js", kScript, page_sliders},
-                              Entry{"/ladder.js", kScript, page_ladder},
-                              Entry{"/laws.js", kScript, page_laws},
-                              Entry{"/result.js", kScript, page_result},
-                              Entry{"/live.js", kScript, page_live},
-                              Entry{"/ring.js", kScript, page_ring},
-                              Entry{"/trigger.js", kScript, page_trigger},
-                              Entry{"/alarms.js", kScript, page_alarms},
-                              Entry{"/uplot.js", kScript, library_uplot},
+                              Entry{"/app.js", kScriptType, page_app},
+                              Entry{"/server.js", kScriptType, page_server},
+                              Entry{"/plots.js", kScriptType, page_plots},
+                              Entry{"/workbench.js", kScriptType, page_workbench},
+                              Entry{"/sliders.js", kScriptType, page_sliders},
+                              Entry{"/ladder.js", kScriptType, page_ladder},
+                              Entry{"/laws.js", kScriptType, page_laws},
+                              Entry{"/result.js", kScriptType, page_result},
+                              Entry{"/live.js", kScriptType, page_live},
+                              Entry{"/ring.js", kScriptType, page_ring},
+                              Entry{"/trigger.js", kScriptType, page_trigger},
+                              Entry{"/alarms.js", kScriptType, page_alarms},
+                              Entry{"/uplot.js", kScriptType, library_uplot},
                               Entry{"/uplot.css", kSheet, library_uplot_sheet},
-                              Entry{"/preact.js", kScript, library_preact},
+                              Entry{"/preact.js", kScriptType, library_preact},
                               Entry{"/licences.txt", kText, library_licences},
                               Entry{"/icon.svg", "image/svg+xml", icon}};
 

@@ -28,18 +28,13 @@ namespace {
 using nlohmann::ordered_json;
 using present::number_or_null;
 using present::typeset;
+using present::typeset_all;
 
 constexpr std::size_t kMostRegions = 5;
 /// A slider reaches from a plant's value over this ratio to the value times this ratio.
 constexpr double kWidestRatio = 2.0;
 /// A slider of an effect reaches to this many of its typical sizes.
 constexpr double kTypicalSizes = 3.0;
-
-ordered_json typeset_all(const std::vector<std::string>& lines) {
-  ordered_json out = ordered_json::array();
-  for (const std::string& line : lines) out.push_back(typeset(line));
-  return out;
-}
 
 ordered_json json_of(const validation::Comparison& comparison,
                      const validation::SignificantRegion& region) {

@@ -15,11 +15,11 @@ constexpr const char* kBoardInfo = "wiring plan; `comedi_board_info` lists subde
 constexpr double kLast = 65535.0;
 
 bool on_board(const Answers& a) { return a.comedi(); }
-bool driven(const Answers& a) { return a.comedi() && a.driven(); }
+bool board_drives(const Answers& a) { return a.comedi() && a.driven(); }
 bool watched(const Answers& a) { return a.comedi() && !a.driven(); }
-bool pressures(const Answers& a) { return a.comedi() && a.measures_supply(); }
-bool chambers(const Answers& a) { return a.comedi() && a.measures_chambers(); }
-bool inputs(const Answers& a) { return pressures(a) || watched(a); }
+bool board_supply(const Answers& a) { return a.comedi() && a.measures_supply(); }
+bool board_chambers(const Answers& a) { return a.comedi() && a.measures_chambers(); }
+bool board_inputs(const Answers& a) { return board_supply(a) || watched(a); }
 
 StandQuestion whole(const char* group, const char* flag, const char* what, const char* where,
                     double min, double max, double usual, When when) {
@@ -70,38 +70,41 @@ std::vector<StandQuestion> encoder_questions() {
        on_board,
        nullptr,
        kEncoder},
-      line("e-stop-line", "line of the e-stop, 1 while released", driven),
-      line("enable-line", "line of the enable switch, 1 while motion is allowed", driven),
-      line("permit-line", "line that every good period toggles, for a watchdog relay", driven),
+      line("e-stop-line", "line of the e-stop, 1 while released", board_drives),
+      line("enable-line", "line of the enable switch, 1 while motion is allowed", board_drives),
+      line("permit-line", "line that every good period toggles, for a watchdog relay",
+           board_drives),
       choice(kEncoder, "accept-no-watchdog",
              "drive the valve though nothing takes a command away "
              "when this process dies",
              "your risk assessment", {"no", "yes"},
-             [](const Answers& a) { return driven(a) && !a.has("permit-line"); }),
+             [](const Answers& a) { return board_drives(a) && !a.has("permit-line"); }),
   };
 }
 
 std::vector<StandQuestion> output_questions() {
   return {
       whole(kBoard, "output-subdevice", "subdevice of the valve; -1: the first analogue output",
-            kBoardInfo, -1.0, 255.0, -1.0, driven),
-      whole(kBoard, "output-channel", "channel of the valve", kBoardInfo, 0.0, kLast, 0.0, driven),
-      whole(kBoard, "output-range", "number of its range", kBoardInfo, 0.0, 255.0, 0.0, driven),
+            kBoardInfo, -1.0, 255.0, -1.0, board_drives),
+      whole(kBoard, "output-channel", "channel of the valve", kBoardInfo, 0.0, kLast, 0.0,
+            board_drives),
+      whole(kBoard, "output-range", "number of its range", kBoardInfo, 0.0, 255.0, 0.0,
+            board_drives),
       {{"output-V-per-V", "voltage at the terminal per volt of command",
         "sheet of the amplifier between; 1: none", 1e-6, 1e6, 1.0},
-       driven,
+       board_drives,
        nullptr,
        kBoard},
       {{"output-offset-V", "voltage at the terminal for command 0", "the same sheet", -100.0, 100.0,
         0.0},
-       driven,
+       board_drives,
        nullptr,
        kBoard},
       choice(kBoard, "positive-voltage", "motion under a positive voltage at the terminal",
-             "try with small steps; commissioning finds it", {"extends", "retracts"}, driven),
+             "try with small steps; commissioning finds it", {"extends", "retracts"}, board_drives),
       {{"delay-ms", "time from the write to the voltage at the valve", "board's sheet", 0.0, 1000.0,
         0.0},
-       driven,
+       board_drives,
        nullptr,
        kBoard},
   };
@@ -117,27 +120,28 @@ std::vector<StandQuestion> input_questions() {
        nullptr,
        kBoard},
       whole(kBoard, "supply-channel", "channel of the supply pressure", kBoardInfo, 0.0, kLast,
-            kMust, pressures),
+            kMust, board_supply),
       whole(kBoard, "pressure-in-channel", "channel of the pressure that extends", kBoardInfo, 0.0,
-            kLast, kMust, chambers),
+            kLast, kMust, board_chambers),
       whole(kBoard, "pressure-out-channel", "channel of the pressure that retracts", kBoardInfo,
-            0.0, kLast, kMust, chambers),
+            0.0, kLast, kMust, board_chambers),
       {{"pressure-bar-per-V", "pressure per volt", "transducer's sheet: full scale over its volts",
         -1e6, 1e6, kMust},
-       pressures,
+       board_supply,
        nullptr,
        kBoard},
       {{"pressure-offset-bar", "pressure at 0 V",
         "transducer's sheet; -62.5 of 1 to 5 V for 250 bar", -1e4, 1e4, 0.0},
-       pressures,
+       board_supply,
        nullptr,
        kBoard},
       whole(kBoard, "input-subdevice", "subdevice of the inputs; -1: the first analogue input",
-            kBoardInfo, -1.0, 255.0, -1.0, inputs),
-      whole(kBoard, "input-range", "number of their range", kBoardInfo, 0.0, 255.0, 0.0, inputs),
+            kBoardInfo, -1.0, 255.0, -1.0, board_inputs),
+      whole(kBoard, "input-range", "number of their range", kBoardInfo, 0.0, 255.0, 0.0,
+            board_inputs),
       choice(kBoard, "aref", "voltage reference of the board's channels", "wiring plan",
              {"ground", "common", "diff", "other"},
-             [](const Answers& a) { return driven(a) || inputs(a); }),
+             [](const Answers& a) { return board_drives(a) || board_inputs(a); }),
   };
 }
 
@@ -147,7 +151,8 @@ std::vector<StandQuestion> board_questions() {
   std::vector<StandQuestion> all = encoder_questions();
   all.push_back({questions::text_question("device", "file of the comedi board", "`ls /dev/comedi*`",
                                           "/dev/comedi0"),
-                 [](const Answers& a) { return driven(a) || inputs(a); }, nullptr, kBoard});
+                 [](const Answers& a) { return board_drives(a) || board_inputs(a); }, nullptr,
+                 kBoard});
   for (const auto& part : {output_questions(), input_questions()}) {
     all.insert(all.end(), part.begin(), part.end());
   }

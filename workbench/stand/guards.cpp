@@ -11,8 +11,6 @@ namespace {
 
 using questions::kMust;
 
-bool driven(const Answers& a) { return a.driven(); }
-
 /// Distance that a proportional loop stays behind the sine: peak speed over the loop's rate.
 double lag_mm(const Answers& a) {
   const double peak_mmps =
@@ -22,7 +20,7 @@ double lag_mm(const Answers& a) {
   return rate_per_s > 0.0 ? peak_mmps / rate_per_s : HUGE_VAL;
 }
 
-std::vector<StandQuestion> pressure_questions() {
+std::vector<StandQuestion> pressure_guards() {
   const auto supply = [](const Answers& a) { return a.driven() && a.measures_supply(); };
   const char* gauge = "gauge at the manifold, relief valve's setting";
   return {
@@ -70,37 +68,37 @@ std::vector<StandQuestion> guard_questions() {
   std::vector<StandQuestion> all{
       {{"speed-limit-mmps", "speed that trips", "test plan; at most the fastest speed", 0.001, 1e5,
         0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) { return 0.7 * a.number("max-speed-mmps"); }},
       {{"braking-mps2", "deceleration that is certain at null",
         "force that holds over moving mass, "
         "a good part less; `inf` of the file: not counted",
         0.001, 1e6, 20.0},
-       driven,
+       &Answers::driven,
        nullptr},
       {{"jump-mm", "step of the reading in one period that no motion has",
         "more than the speed that trips over the rate", 1e-4, 1e5, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) {
          return std::max(1.0, 2.0 * a.number("speed-limit-mmps") / a.number("rate-Hz"));
        }},
       {{"following-mm", "distance between reference and position that trips",
         "twice the lag of the controller", 1e-4, 1e5, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) {
          const double travel_mm = a.number("high-mm") - a.number("low-mm");
          return std::min(std::max(1.0, 2.0 * lag_mm(a)), std::max(1.0, travel_mm));
        }},
       {{"frozen-mm", "motion under which a reading counts as frozen",
         "some steps of the position sensor", 1e-4, 1e5, 0.1},
-       driven,
+       &Answers::driven,
        nullptr},
       {{"frozen-V", "distance of the command from null that must move the rod",
         "more than the valve's dead band, which commissioning measures", 0.001, 99.0, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) { return 0.05 * a.number("limit-V"); }},
   };
-  const std::vector<StandQuestion> pressures = pressure_questions();
+  const std::vector<StandQuestion> pressures = pressure_guards();
   all.insert(all.end(), pressures.begin(), pressures.end());
   return all;
 }

@@ -15,12 +15,12 @@ using When = std::function<bool(const Answers&)>;
 constexpr const char* kLine = "Modbus line";
 constexpr const char* kMap = "Modbus registers";
 constexpr const char* kManual = "device manual, register table";
-constexpr double kLast = 65535.0;
+constexpr double kLastRegister = 65535.0;
 
 bool on_modbus(const Answers& a) { return a.modbus(); }
-bool driven(const Answers& a) { return a.modbus() && a.driven(); }
-bool pressures(const Answers& a) { return a.modbus() && a.measures_supply(); }
-bool chambers(const Answers& a) { return a.modbus() && a.measures_chambers(); }
+bool bus_drives(const Answers& a) { return a.modbus() && a.driven(); }
+bool bus_supply(const Answers& a) { return a.modbus() && a.measures_supply(); }
+bool bus_chambers(const Answers& a) { return a.modbus() && a.measures_chambers(); }
 bool tcp(const Answers& a) { return a.is("bus", "tcp"); }
 bool rtu(const Answers& a) { return a.is("bus", "rtu"); }
 
@@ -28,13 +28,14 @@ bool rtu(const Answers& a) { return a.is("bus", "rtu"); }
 StandQuestion address(const char* flag, const char* what, When when) {
   return {whole_question(flag, what,
                          "device manual, register table; as in the protocol, from 0 (40001 is 0)",
-                         0.0, kLast, kMust),
+                         0.0, kLastRegister, kMust),
           std::move(when), nullptr, kMap};
 }
 
 /// Address of a register that a device may lack.
 StandQuestion optional(const char* flag, const char* what, When when) {
-  return {whole_question(flag, what, "device manual, register table; -1: none", -1.0, kLast, -1.0),
+  return {whole_question(flag, what, "device manual, register table; -1: none", -1.0, kLastRegister,
+                         -1.0),
           std::move(when), nullptr, kMap};
 }
 
@@ -131,10 +132,10 @@ std::vector<StandQuestion> command_questions() {
        on_modbus,
        nullptr,
        kMap},
-      optional("readback-register", "address of the command as it is output", driven),
+      optional("readback-register", "address of the command as it is output", bus_drives),
       {{"delay-ms", "time from the device's reply to the voltage at the valve",
         "device manual, update time of its output", 0.0, 1000.0, 0.0},
-       driven,
+       bus_drives,
        nullptr,
        kMap},
   };
@@ -145,9 +146,9 @@ std::vector<StandQuestion> switch_questions() {
     return a.modbus() && (a.has("e-stop-register") || a.has("enable-register"));
   };
   return {
-      optional("e-stop-register", "address of the e-stop, 1 while released", driven),
+      optional("e-stop-register", "address of the e-stop, 1 while released", bus_drives),
       optional("enable-register", "address of the enable switch, 1 while motion is allowed",
-               driven),
+               bus_drives),
       table("switch-table", "table of e-stop and enable", {"discrete", "coil", "holding", "input"},
             switches),
   };
@@ -164,7 +165,7 @@ std::vector<StandQuestion> watchdog_questions() {
   return {
       {{"watchdog-ms", "the device's own time-out for commands; 0: none",
         "device manual, communication watchdog; at least two periods", 0.0, 6e4, kMust},
-       driven,
+       bus_drives,
        nullptr,
        kMap},
       optional("watchdog-register", "address at which that time-out is set; -1: set by hand",
@@ -174,7 +175,7 @@ std::vector<StandQuestion> watchdog_questions() {
        nullptr,
        kMap},
       optional("permit-register", "coil that every good period toggles, for a watchdog relay",
-               driven),
+               bus_drives),
       {choice_question("accept-no-watchdog",
                        "drive the valve though nothing takes a command away when this "
                        "process dies",
@@ -185,18 +186,18 @@ std::vector<StandQuestion> watchdog_questions() {
 
 std::vector<StandQuestion> pressure_questions() {
   return {
-      address("supply-register", "address of the supply pressure", pressures),
-      address("pressure-in-register", "address of the pressure that extends", chambers),
-      address("pressure-out-register", "address of the pressure that retracts", chambers),
-      table("pressure-table", "table of the pressures", {"holding", "input"}, pressures),
-      type("pressure-type", "type of the pressures", pressures),
+      address("supply-register", "address of the supply pressure", bus_supply),
+      address("pressure-in-register", "address of the pressure that extends", bus_chambers),
+      address("pressure-out-register", "address of the pressure that retracts", bus_chambers),
+      table("pressure-table", "table of the pressures", {"holding", "input"}, bus_supply),
+      type("pressure-type", "type of the pressures", bus_supply),
       {{"pressure-bar-per-count", "pressure per raw unit", "device manual, scaling", -1e6, 1e6,
         kMust},
-       pressures,
+       bus_supply,
        nullptr,
        kMap},
       {{"pressure-offset-bar", "pressure at raw 0", "device manual, scaling", -1e4, 1e4, 0.0},
-       pressures,
+       bus_supply,
        nullptr,
        kMap},
   };

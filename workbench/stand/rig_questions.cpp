@@ -13,8 +13,6 @@ using questions::kMust;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-bool driven(const Answers& a) { return a.driven(); }
-
 std::vector<StandQuestion> device_questions() {
   const Question simulated = questions::text_question(
       "model", "model file of the rig", "config/models, or made by `spoolwatch new KIND`");
@@ -76,17 +74,17 @@ std::vector<StandQuestion> valve_questions() {
         "valve's test sheet, null bias; commissioning "
         "measures it",
         -100.0, 100.0, 0.0},
-       driven,
+       &Answers::driven,
        nullptr},
       {{"limit-V", "greatest distance of a command from null",
         "valve electronics' sheet, full command", 0.01, 100.0, 10.0},
-       driven,
+       &Answers::driven,
        nullptr},
       {{"slew-V-per-s", "fastest change of the command",
         "valve electronics' sheet, or what the "
         "specimen bears",
         0.001, 1e9, 1000.0},
-       driven,
+       &Answers::driven,
        nullptr},
   };
 }
@@ -100,18 +98,18 @@ std::vector<StandQuestion> motion_questions() {
         "5 1/s times limit over fastest speed to begin with; twice that is too much for slow "
         "valves",
         0.0, 1e6, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) {
          return kLoop_per_s * a.number("limit-V") / (a.number("max-speed-mmps") / 1e3);
        }},
       {{"frequency-Hz", "frequency of the sine that `start` begins", "test plan", 0.0, 1000.0, 0.5},
-       driven,
+       &Answers::driven,
        nullptr},
       {{"centre-mm", "middle of the motion", "test plan; inside the travel", -1e5, 1e5, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) { return 0.5 * (a.number("low-mm") + a.number("high-mm")); }},
       {{"amplitude-mm", "amplitude of the motion", "test plan; small to begin with", 0.0, 1e5, 0.0},
-       driven,
+       &Answers::driven,
        [](const Answers& a) {
          const double rate_per_s = kTwoPi * a.number("frequency-Hz");
          const double tenth_mm = 0.1 * (a.number("high-mm") - a.number("low-mm"));

@@ -17,10 +17,10 @@ constexpr std::array kLeads_samples = {1.0 / 4.0, 1.0 / 3.0, 3.0 / 8.0, 9.0 / 20
 constexpr double kMuchLess = 0.6;
 /// Sample time from which on a floor may hide the error of a held command.
 constexpr double kSlow_s = 0.015;
-constexpr int kIterations = 10;
+constexpr int kLeadIterations = 10;
 /// Iterations after which a lead must leave less than none does to be fitted further.
-constexpr int kFirstIterations = 2;
-constexpr double kTolerance = 1e-3;
+constexpr int kLeadFirstIterations = 2;
+constexpr double kLeadTolerance = 1e-3;
 
 /// Weights of u(-1) ... u(2) in the mean over [x - 1/2, x + 1/2] of the cubic through them, which
 /// is its value at x and a 24th of its second derivative there; u(0) alone for x = 0.
@@ -67,7 +67,7 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
   });
   if (!one_rate) return {};
   FitOptions options;
-  options.tolerance = kTolerance;
+  options.tolerance = kLeadTolerance;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
@@ -77,7 +77,7 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
     advance_command(data, kLeads_samples[i]);
     FitOptions effort = options;
     Eigen::VectorXd start = all.start;
-    for (const int iterations : {kFirstIterations, kIterations}) {
+    for (const int iterations : {kLeadFirstIterations, kLeadIterations}) {
       effort.max_iterations = iterations;
       fits[i] = fit(context.problem.model, data, data.training_mask, all.parameters, start, effort);
       if (!(fits[i].training_rms_m < stage.fitted.training_rms_m)) break;

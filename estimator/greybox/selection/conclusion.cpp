@@ -32,7 +32,7 @@ constexpr double kGreatWhite = 10.0;
 /// spring leaves four tenths and more.
 constexpr double kMostOfDrive_ratio = 0.33;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow.
-constexpr double kLost = 0.5;
+constexpr double kDoesNotFollow = 0.5;
 /// Share of the squared error that a place has to explain to be named.
 constexpr double kNamesAPlace = 0.05;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
@@ -196,7 +196,7 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
       disturbance &&
       disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
       floor_m > kGreatWhite * sensor_m;
-  const bool lost = rms_m > kLost * motion_rms_m(search.problem.data);
+  const bool lost = rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
   const double drive_N = rms_of_drive_N(search, innovations.final.model.fitted);
   const bool great = disturbance && disturbance->as == "force" && drive_N > 0.0 &&
                      disturbance->value > kMostOfDrive_ratio * drive_N;

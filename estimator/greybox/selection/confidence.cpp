@@ -13,7 +13,7 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
-constexpr double kMost = 0.5;
+constexpr double kMostOfRemainder = 0.5;
 /// Squared error that an effect explains over that which remains, above which it is no stand-in.
 constexpr double kBeyondDoubt = 100.0;
 /// The same where what remains enters as the effect does: a square of the speed in place of the
@@ -46,7 +46,7 @@ std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
 /// True when most of the remaining error enters as this effect does: the law there may be another.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(diagnosis, effect) &&
-         diagnosis.where.front().explained_ratio > kMost;
+         diagnosis.where.front().explained_ratio > kMostOfRemainder;
 }
 
 /// Squared error of simulations that an effect explains, over that which remains, with the observer

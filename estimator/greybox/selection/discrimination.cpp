@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 constexpr double kDifference = 1e-3;  ///< step of the difference quotients, search units
 constexpr double kPart = 0.05;
 constexpr int kReweightings = 3;
-constexpr int kIterations = 15;
-constexpr double kTolerance = 1e-3;
+constexpr int kRivalIterations = 15;
+constexpr double kRivalTolerance = 1e-3;
 
 /// Residual and its derivatives at the rival's theta.
 MatrixXd with_derivatives(const SearchContext& context, const FitDataset& data,
@@ -87,8 +87,8 @@ double expected_separation(const SearchContext& context, const FitDataset& data,
 double fitted_separation(const SearchContext& context, const FitDataset& data,
                          const FitSummary& rival) {
   FitOptions options;
-  options.max_iterations = kIterations;
-  options.tolerance = kTolerance;
+  options.max_iterations = kRivalIterations;
+  options.tolerance = kRivalTolerance;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   const FitSummary fitted =

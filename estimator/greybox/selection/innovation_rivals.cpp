@@ -12,9 +12,9 @@ namespace estimator::greybox::selection {
 
 namespace {
 
-constexpr std::size_t kLargestGroup = 3;
+constexpr std::size_t kLargestRivalGroup = 3;
 /// Most rivals that get a noise model of their own.
-constexpr std::size_t kFinalists = 3;
+constexpr std::size_t kRivalFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
 /// Lag within which a rival with a noise model of its own is polished before it is dismissed, and
@@ -93,7 +93,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
     return (far && !rival.simulated) ||
            std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
   });
-  rivals.resize(std::min(rivals.size(), kFinalists));
+  rivals.resize(std::min(rivals.size(), kRivalFinalists));
   std::vector<InnovationStage> found(rivals.size());
   const unsigned threads = plain.options.threads;
   const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
@@ -115,7 +115,7 @@ InnovationRivals rivals_among(const InnovationStage& final, const std::string& e
                               const std::vector<InnovationStage>& exchanges) {
   InnovationRivals group{{effect}, {final.model.fitted}};
   for (const InnovationStage& other : exchanges) {
-    if (group.names.size() == kLargestGroup) break;
+    if (group.names.size() == kLargestRivalGroup) break;
     if (0.5 * (penalised(other) - penalised(final)) >= kRivals_nats) continue;
     group.names.push_back(other.model.added.back());
     group.explanations.push_back(other.model.fitted);

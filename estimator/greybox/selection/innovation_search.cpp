@@ -18,11 +18,11 @@ namespace estimator::greybox::selection {
 
 namespace {
 
-constexpr std::size_t kMostEffects = 4;
+constexpr std::size_t kMostInnovationEffects = 4;
 constexpr std::size_t kMostLines = 4;
 constexpr int kMostExchanges = 2;
 /// Candidates of a round that get a noise model of their own.
-constexpr std::size_t kFinalists = 3;
+constexpr std::size_t kRoundFinalists = 3;
 constexpr std::size_t kMostLineFinalists = 2;
 /// Share of what a search has explained that may be owed to its models being inexact: a candidate
 /// has to gain more. Lines are nearly exact: their frequencies are tuned, what they move simulated.
@@ -98,7 +98,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
             std::vector<std::string>& dropped) {
   std::vector<InnovationTrial> trials;
   const bool effects_too = candidates == Candidates::effects_and_lines;
-  if (effects_too && stage.model.added.size() < kMostEffects) {
+  if (effects_too && stage.model.added.size() < kMostInnovationEffects) {
     trials = effect_trials(stage);
     add_simulated_starts(stage, simulated_effects(plain, stage, held), trials);
     std::erase_if(trials, [&](const InnovationTrial& trial) {
@@ -125,7 +125,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
   std::mutex reporting;
   in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
     InnovationTrial& trial = trials[i];
-    const bool finalist = i < kFinalists && trial.candidate.gain_nats > 0.0;
+    const bool finalist = i < kRoundFinalists && trial.candidate.gain_nats > 0.0;
     if (plain.cancelled() || (!finalist && !trial.simulated)) return;
     stages[i] = settled(plain, stage, trial);
     if (!std::isfinite(stages[i].minus_two_log)) return;

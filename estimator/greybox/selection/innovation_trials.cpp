@@ -23,9 +23,9 @@ constexpr std::size_t kFitted = 8;
 constexpr std::size_t kSimulated = 4;
 constexpr std::size_t kSimulatedStarts = 2;
 constexpr double kWorthSimulating = 0.97;
-constexpr int kIterations = 10;
-constexpr double kTolerance = 2e-3;
-constexpr double kThoroughTolerance = 1e-5;
+constexpr int kTrialStartIterations = 10;
+constexpr double kTrialStartTolerance = 2e-3;
+constexpr double kSimulationTolerance = 1e-5;
 
 ModelStage with_effect(const ModelStage& stage, const std::string& effect, FitSummary fitted) {
   ModelStage next{stage.added, std::move(fitted)};
@@ -36,8 +36,8 @@ ModelStage with_effect(const ModelStage& stage, const std::string& effect, FitSu
 FitOptions simulation_options(const SearchContext& context, InnovationFit effort) {
   const bool thorough = effort == InnovationFit::converged;
   FitOptions options;
-  options.max_iterations = thorough ? FitOptions{}.max_iterations : kIterations;
-  options.tolerance = thorough ? kThoroughTolerance : kTolerance;
+  options.max_iterations = thorough ? FitOptions{}.max_iterations : kTrialStartIterations;
+  options.tolerance = thorough ? kSimulationTolerance : kTrialStartTolerance;
   options.final_jacobian = thorough;
   options.cancel = context.options.cancel;
   return options;

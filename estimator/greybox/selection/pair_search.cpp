@@ -18,16 +18,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Number of the largest trial sizes of an effect that are used.
-constexpr Index kSizes = 4;
+constexpr Index kPairSizes = 4;
 /// Pairs that are screened on the whole record, the best of the screening segment.
 constexpr std::size_t kLookedAt = 16;
 /// Pairs that are fitted, each from the best start seen from either base.
-constexpr std::size_t kFitted = 6;
+constexpr std::size_t kFittedPairs = 6;
 /// Iterations on the segment; pairs within this factor of the best continue on the whole record.
-constexpr int kFirstIterations = 4;
-constexpr double kFar = 3.0;
+constexpr int kPairIterations = 4;
+constexpr double kFarPair = 3.0;
 /// Fitted side by side before it is asked whether one explains the record.
-constexpr std::size_t kWave = 2;
+constexpr std::size_t kPairWave = 2;
 
 struct Effect {
   std::string name;
@@ -50,7 +50,7 @@ std::vector<Effect> effects_of(const SearchContext& context,
     if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
     Effect effect{info.name, effect_parameters(info, kFirstRefinements), {}};
     if (is_periodic(effect.own) || is_resonant(effect.own)) continue;
-    effect.sizes = trial_sizes(effect.own, context.problem.data).rightCols(kSizes);
+    effect.sizes = trial_sizes(effect.own, context.problem.data).rightCols(kPairSizes);
     effects.push_back(std::move(effect));
   }
   return effects;
@@ -62,10 +62,11 @@ void screened(const plant_sim::ModelFile& model, const FitDataset& data,
   DatasetSimulation run(model, data, couple.parameters);
   const Index first = couple.first->sizes.rows();
   const Index second = couple.second->sizes.rows();
-  MatrixXd points(base.size() + first + second, kSizes * kSizes);
-  for (Index i = 0; i < kSizes; ++i) {
-    for (Index k = 0; k < kSizes; ++k) {
-      points.col(i * kSizes + k) << base, couple.first->sizes.col(i), couple.second->sizes.col(k);
+  MatrixXd points(base.size() + first + second, kPairSizes * kPairSizes);
+  for (Index i = 0; i < kPairSizes; ++i) {
+    for (Index k = 0; k < kPairSizes; ++k) {
+      points.col(i * kPairSizes + k) << base, couple.first->sizes.col(i),
+          couple.second->sizes.col(k);
     }
   }
   double least = std::numeric_limits<double>::infinity();
@@ -135,23 +136,24 @@ std::vector<Candidate> pair_search(const SearchContext& context, const ModelStag
   const Projection there(segment.fitted, segment.data.all_mask);
   look_at(context, segment.data, there, bases, kLookedAt, couples);
   look_at(context, context.problem.data,
-          Projection(stage.fitted, context.problem.data.training_mask), bases, kFitted, couples);
+          Projection(stage.fitted, context.problem.data.training_mask), bases, kFittedPairs,
+          couples);
   SearchContext on_segment = context;
   on_segment.problem.data = segment.data;
   const ModelStage before{stage.added, segment.fitted};
   std::vector<Candidate> begun(couples.size());
   in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
-    if (!context.cancelled())
-      begun[i] = quick_fit(on_segment, before, couples[i], kFirstIterations);
+    if (!context.cancelled()) begun[i] = quick_fit(on_segment, before, couples[i], kPairIterations);
   });
   double best_m = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.validation_rms_m);
   std::vector<Candidate> candidates(couples.size());
-  for (std::size_t from = 0; from < couples.size(); from += kWave) {
-    in_parallel(std::min(kWave, couples.size() - from), context.options.threads,
+  for (std::size_t from = 0; from < couples.size(); from += kPairWave) {
+    in_parallel(std::min(kPairWave, couples.size() - from), context.options.threads,
                 [&](std::size_t k) {
                   const std::size_t i = from + k;
-                  if (context.cancelled() || !(begun[i].validation_rms_m < kFar * best_m)) return;
+                  if (context.cancelled() || !(begun[i].validation_rms_m < kFarPair * best_m))
+                    return;
                   couples[i].starts = {begun[i].fitted.theta};
                   candidates[i] = quick_fit(context, stage, couples[i], kQuickIterations);
                 });

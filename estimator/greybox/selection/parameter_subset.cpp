@@ -18,7 +18,7 @@ constexpr double kNear = 1.1;
 constexpr double kPatience = 4.0;
 constexpr int kMostStrides = 8;
 /// Share of the error by which a refinement brought back has to lower it.
-constexpr double kRevived = 1e-3;
+constexpr double kRevivedShare = 1e-3;
 
 }  // namespace
 
@@ -93,7 +93,8 @@ void revive(const SearchContext& context, FitSummary& fitted) {
     if (context.cancelled()) return;
     FitSummary other = refit(context, {fitted.parameters, start},
                              context.problem.data.training_mask, wide(context.options.threads));
-    if (other.training_rms_m < (1.0 - kRevived) * fitted.training_rms_m) fitted = std::move(other);
+    if (other.training_rms_m < (1.0 - kRevivedShare) * fitted.training_rms_m)
+      fitted = std::move(other);
   }
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double kTurned = 3.0;
 
 /// Enough to distinguish plants, and signs.
-constexpr int kIterations = 12;
+constexpr int kCheckIterations = 12;
 
 /// RMS of the series about its mean.
 double spread(const std::vector<double>& values) {
@@ -97,7 +97,7 @@ plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDat
 FitSummary fitted_to(const SearchContext& context, const plant_sim::ModelFile& model,
                      const FitDataset& data) {
   FitOptions options;
-  options.max_iterations = kIterations;
+  options.max_iterations = kCheckIterations;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   const std::vector<FreeParameter> parameters = plant_parameters(model);

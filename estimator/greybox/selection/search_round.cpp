@@ -18,7 +18,7 @@ constexpr double kStrain = 6.0;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kQuickTolerance = 2e-3;
+constexpr double kRoundTolerance = 2e-3;
 constexpr int kThoroughIterations = 15;
 constexpr double kThoroughTolerance = 3e-5;
 /// Ratio within which candidates are fitted to convergence.
@@ -45,7 +45,7 @@ constexpr double kComparedBlock_s = 1.0;
 FitOptions quick(const SearchContext& context) {
   FitOptions options;
   options.max_iterations = kQuickIterations;
-  options.tolerance = kQuickTolerance;
+  options.tolerance = kRoundTolerance;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   return options;

@@ -9,8 +9,8 @@ namespace estimator::greybox::selection {
 namespace {
 
 /// Iterations after which only fits within that factor of the best continue.
-constexpr int kFirstIterations = 8;
-constexpr double kFar = 1.5;
+constexpr int kPathIterations = 8;
+constexpr double kFarStage = 1.5;
 /// An effect that removes this share of the held-out error needs no cross-validation.
 constexpr double kPlainToSee = 0.5;
 
@@ -32,7 +32,7 @@ ModelStage taken(const ModelStage& before, const std::string& effect, FitSummary
 ModelStage best_of(const SearchContext& context, const ModelStage& before, const ModelStage& final,
                    const std::vector<std::string>& effects) {
   FitOptions begin;
-  begin.max_iterations = kFirstIterations;
+  begin.max_iterations = kPathIterations;
   begin.final_jacobian = false;
   begin.cancel = context.options.cancel;
   std::vector<ParameterSubset> subsets;
@@ -47,7 +47,7 @@ ModelStage best_of(const SearchContext& context, const ModelStage& before, const
     return a.validation_rms_m < b.validation_rms_m;
   };
   const double least_m = std::min_element(fits.begin(), fits.end(), lower)->validation_rms_m;
-  const auto far = [&](const auto& fit) { return fit.validation_rms_m > kFar * least_m; };
+  const auto far = [&](const auto& fit) { return fit.validation_rms_m > kFarStage * least_m; };
   const auto near =
       static_cast<std::ptrdiff_t>(fits.size()) - std::count_if(fits.begin(), fits.end(), far);
   const SimulationWidth width = near == 1 ? wide(context.options.threads) : SimulationWidth{};

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kIterations = 10;
+constexpr int kHalfIterations = 10;
 /// Distance over its error that chance reaches once in twenty.
 constexpr double kChance = 2.0;
 
@@ -34,7 +34,7 @@ VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
                        const VectorXd& weights, double observer_per_s) {
   const DiagnosisProblem& problem = context.problem;
   FitOptions options;
-  options.max_iterations = kIterations;
+  options.max_iterations = kHalfIterations;
   options.observer_per_s = observer_per_s;
   options.cancel = context.options.cancel;
   std::array<FitSummary, 2> halves;

@@ -17,7 +17,7 @@ constexpr double kHalfPi = 1.5707963267948966;
 constexpr Index kSizes = 8;
 constexpr double kSignedRatio = 4.0;    ///< ratio between sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< ratio between sizes of a one-signed effect
-constexpr double kSmall =
+constexpr double kSmallSize =
     0.2;  ///< share of the typical size: the response of a wave is then linear
 constexpr double kFewestTurns = 1.5;   ///< a wave is one that is seen more than once
 constexpr double kFinestTurns = 60.0;  ///< turns of the finest wavelength over the motion
@@ -45,7 +45,7 @@ constexpr double kUsualShare = 0.3;
 constexpr double kUsualShareSd = 0.2;
 /// Damping ratio beyond which a response shows no peak worth the name.
 constexpr double kMostDamping = 0.4;
-constexpr const char* kFrequency = ".resonance_Hz";
+constexpr const char* kFrequencySuffix = ".resonance_Hz";
 constexpr const char* kDamping = ".damping_ratio";
 constexpr const char* kMass = ".mass_ratio";
 constexpr const char* kSensor = ".sensor_ratio";
@@ -130,7 +130,7 @@ MatrixXd waves(const std::vector<FreeParameter>& parameters, const FitDataset& d
   MatrixXd points(static_cast<Index>(parameters.size()), 2);
   for (Index quarter = 0; quarter < 2; ++quarter) {
     points.col(quarter) = typical_point(parameters, span);
-    points(0, quarter) *= kSmall;
+    points(0, quarter) *= kSmallSize;
     points(wavelength, quarter) =
         std::clamp(length.to_theta(range_m / turns), length.lower, length.upper);
     points(phase, quarter) = angle.to_theta(kHalfPi * static_cast<double>(quarter));
@@ -169,7 +169,7 @@ void hold_wavelength(const plant_sim::EffectInfo& effect, const VectorXd& own,
 }
 
 bool is_resonant(const std::vector<FreeParameter>& parameters) {
-  return index_of(parameters, kFrequency) >= 0;
+  return index_of(parameters, kFrequencySuffix) >= 0;
 }
 
 std::vector<double> resonances_in(const FitDataset& data) {
@@ -197,7 +197,7 @@ MatrixXd resonances(const std::vector<FreeParameter>& parameters,
     auto row = points.row(static_cast<Index>(i));
     if (ends_with(p.name, kMass)) row.setConstant(p.to_theta(kSmallShare));
     if (ends_with(p.name, kDamping)) row.setConstant(p.to_theta(kTriedDamping));
-    if (!ends_with(p.name, kFrequency)) continue;
+    if (!ends_with(p.name, kFrequencySuffix)) continue;
     for (std::size_t k = 0; k < frequencies_Hz.size(); ++k) {
       row[static_cast<Index>(k)] = p.to_theta(frequencies_Hz[k]);
     }
@@ -221,7 +221,7 @@ Resonance resonance_of(const std::vector<FreeParameter>& parameters, double freq
     if (on_driven && ends_with(p.name, kMass)) {
       take(p, std::min(swing / (1.0 + swing), kMostShare));
     }
-    if (ends_with(p.name, kFrequency)) {
+    if (ends_with(p.name, kFrequencySuffix)) {
       take(p, frequency_Hz);
       found.parameters.back().lower = p.to_theta(frequencies.front() / kResonanceRatio);
       found.parameters.back().upper = p.to_theta(frequencies.back() * kResonanceRatio);

@@ -16,8 +16,8 @@ constexpr double kHour_s = 3600.0;
 /// Share of the distance at which the end counts as reached, despite rounding.
 constexpr double kEnd = 1.0 - 1e-9;
 
-std::size_t tracked_index(const ParameterSet& set, const std::string& name,
-                          const std::string& where) {
+std::size_t followed_index(const ParameterSet& set, const std::string& name,
+                           const std::string& where) {
   std::string names;
   for (std::size_t i = 0; i < set.tracked; ++i) {
     if (set.parameters[i].name == name) return i;
@@ -33,7 +33,7 @@ BaselineDrift::BaselineDrift(const ParameterSet& set, const DriftSettings& follo
     : rate_per_s_(following.ratio_per_h / kHour_s) {
   const double most = following.most_ratio;
   for (const std::string& name : following.parameters) {
-    const std::size_t index = tracked_index(set, name, where);
+    const std::size_t index = followed_index(set, name, where);
     const auto same = [index](const Followed& one) { return one.index == index; };
     if (std::any_of(followed_.begin(), followed_.end(), same)) continue;
     const bool ratio = set.parameters[index].scale == ParameterScale::logarithmic;

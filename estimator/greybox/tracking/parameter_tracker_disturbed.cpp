@@ -34,9 +34,9 @@ constexpr double kFollowed = 0.1;
 /// The random part follows within this factor of the learned level.
 constexpr double kMostFollowed = 3.0;
 /// Excess of an error over the healthy one allowed by chance, in standard deviations.
-constexpr double kChanceOfRms = 3.5;
+constexpr double kChanceOfDisturbedRms = 3.5;
 /// One-sided 95 % quantile, in standard errors.
-constexpr double kMostly = 1.645;
+constexpr double kOneSided95 = 1.645;
 
 }  // namespace
 
@@ -115,8 +115,9 @@ std::optional<WindowResult> ParameterTracker::look_disturbed(double t_s) {
   window.evaluations = found.evaluations;
   window.rms_m = found.rms_m;
   window.correlation = found.correlation;
-  const double most = std::max(settings_.most_ratio,
-                               1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
+  const double most =
+      std::max(settings_.most_ratio,
+               1.0 + kChanceOfDisturbedRms / std::sqrt(2.0 * static_cast<double>(samples)));
   const Misfit misfit = this->misfit(found, most);
   window.fits = !misfit;
   window.explained = moves(data) && window.fits;
@@ -130,7 +131,7 @@ std::optional<WindowResult> ParameterTracker::look_disturbed(double t_s) {
     one.std_error = found.std_error[at] * p.slope(one.theta);
     one.smallest = (std::max(least_change(set_, i, settings_.thresholds),
                              settings_.thresholds.sure * causes.std_error[at]) +
-                    kMostly * causes.std_error[at]) *
+                    kOneSided95 * causes.std_error[at]) *
                    p.slope(one.theta);
     window.estimates.push_back(one);
   }
