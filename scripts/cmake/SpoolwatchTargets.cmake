@@ -53,6 +53,16 @@ target_compile_definitions(spoolwatch_test_paths INTERFACE
   SPOOLWATCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
   SPOOLWATCH_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
 
+# spoolwatch_unite(target): compiles several sources as one unit. Half of a unit's code is that of templates and of
+# copied structures, which its neighbours have as well. A name in an unnamed namespace is unique in its folder.
+option(SPOOLWATCH_UNITE "Compile several sources as one unit; OFF shows a missing #include" ON)
+function(spoolwatch_unite target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SPOOLWATCH_UNITE} UNITY_BUILD_BATCH_SIZE 6)
+  if(SPOOLWATCH_UNITE)  # GCC takes what a source includes for a header, which must not have types of its own
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
+
 # spoolwatch_library(name SOURCES... [LIBS...]): a static library; name = folder with _ for /.
 function(spoolwatch_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
@@ -60,6 +70,9 @@ function(spoolwatch_library name)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC spoolwatch_options ${ARG_LIBS})
     spoolwatch_precompile(${name} product)
+    if(NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "^${CMAKE_SOURCE_DIR}/tests/")  # few files, with names in common
+      spoolwatch_unite(${name})
+    endif()
   else()
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE spoolwatch_options ${ARG_LIBS})
@@ -88,6 +101,7 @@ function(spoolwatch_test name)
   target_link_libraries(${name} PRIVATE spoolwatch_test_options spoolwatch_test_paths
     GTest::gmock_main)
   spoolwatch_precompile(${name} tests)
+  spoolwatch_unite(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
   if(realtime IN_LIST ARG_LABELS)  # two loops of highest priority would disturb each other
@@ -97,11 +111,14 @@ function(spoolwatch_test name)
     PROPERTIES ${properties})
 endfunction()
 
-# spoolwatch_tests(name SOURCES... [LIBS...] [PROGRAMS...]): gives sources to a test program; the
-# PROGRAMS are what they start.
+# spoolwatch_tests(name SOURCES... [ALONE...] [LIBS...] [PROGRAMS...]): gives sources to a test program; those that
+# are ALONE have a name of an unnamed namespace in common with another one. The PROGRAMS are what they start.
 function(spoolwatch_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;PROGRAMS" ${ARGN})
-  target_sources(${name} PRIVATE ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LIBS;PROGRAMS" ${ARGN})
+  target_sources(${name} PRIVATE ${ARG_SOURCES} ${ARG_ALONE})
+  if(ARG_ALONE)
+    set_source_files_properties(${ARG_ALONE} TARGET_DIRECTORY ${name} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   target_link_libraries(${name} PRIVATE ${ARG_LIBS})
   if(ARG_PROGRAMS)
     add_dependencies(${name} ${ARG_PROGRAMS})
