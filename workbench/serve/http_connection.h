@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -92,6 +93,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
   void read_head() {
     if (++requests_ > kMostRequests) return;
+    waits_since_ = std::chrono::steady_clock::now();
     head_.emplace();
     head_->header_limit(network_->limits.header_bytes);
     head_->body_limit(network_->limits.upload_bytes);
@@ -122,10 +124,15 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     write_events();
   }
   [[nodiscard]] unsigned topics() const { return topics_; }
+  /// Since when it has had no whole request, an upload's header; none: it has one.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> waits_since() const {
+    return waits_since_;
+  }
   /// Ends it, whatever it waits for.
   void abandon() {
     const auto self = shared_from_this();
     waiting_.reset();
+    waits_since_.reset();
     close();
   }
   void close() {
@@ -172,6 +179,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
       stream_.expires_after(network_->limits.request_time);
       return read_text();
     }
+    waits_since_.reset();
     file_.emplace(std::move(*head_));
     file_->body_limit(limit);
     request_.upload = std::make_shared<const UploadedFile>(plan.file);
@@ -219,6 +227,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   void hand_over() {
+    waits_since_.reset();
     stream_.expires_never();
     std::weak_ptr<HttpConnection> weak = weak_from_this();
     waiting_ = shared_from_this();  // until the answer comes
@@ -241,6 +250,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   void send(HttpResponse response) {
+    waits_since_.reset();
     if (response.topics != 0) return begin_stream(response);
     if (!response.file.empty()) return send_file(response);
     auto message = std::make_shared<http::response<http::string_body>>();
@@ -356,6 +366,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::optional<http::request_parser<http::file_body>> file_;
   HttpRequest request_;
   std::shared_ptr<HttpConnection> waiting_;
+  std::optional<std::chrono::steady_clock::time_point> waits_since_;
   bool keep_alive_ = true;
   int requests_ = 0;
   unsigned topics_ = 0;  ///< not 0: an event stream

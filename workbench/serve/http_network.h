@@ -32,6 +32,8 @@ class HttpNetwork : public std::enable_shared_from_this<HttpNetwork> {
 
   void accept();
   void take_waiting();
+  /// Ends the connection that has waited longest for a request; false where each has one.
+  bool make_room();
   void beat();
   void publish(unsigned topic, const std::shared_ptr<const std::string>& event);
   void publish_to(const std::vector<StreamId>& to, const std::shared_ptr<const std::string>& event);

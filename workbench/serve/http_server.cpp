@@ -45,7 +45,8 @@ void HttpNetwork::take_waiting() {
       });
       return;
     }
-    if (connections.size() >= limits.connections) {
+    const bool full = connections.size() >= limits.connections;
+    if (full && !make_room()) {
       ::close(file);
       continue;
     }
@@ -60,7 +61,18 @@ void HttpNetwork::take_waiting() {
       continue;
     }
     std::make_shared<HttpConnection>(shared_from_this(), std::move(socket))->read_head();
+    if (full) return accept();  // requests that have come are read before more take their place
   }
+}
+
+bool HttpNetwork::make_room() {
+  HttpConnection* oldest = nullptr;
+  for (HttpConnection* const one : connections) {
+    if (!one->waits_since()) continue;
+    if (oldest == nullptr || *one->waits_since() < *oldest->waits_since()) oldest = one;
+  }
+  if (oldest != nullptr) oldest->abandon();
+  return oldest != nullptr;
 }
 
 void HttpNetwork::beat() {
