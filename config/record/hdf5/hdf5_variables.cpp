@@ -20,6 +20,7 @@ constexpr hsize_t kMostObjects = 10'000;
 constexpr hsize_t kMostColumns = 64;
 /// Numbers that a file may unpack to for each of its bytes.
 constexpr double kMostPerByte = 1000.0;
+constexpr double kMostNumbers = 1U << 27U;  ///< a gibibyte, as of other MAT files
 constexpr std::size_t kLongestText = 256;
 
 /// An identifier of the library, closed with the object.
@@ -70,7 +71,7 @@ class FileReader {
   explicit FileReader(const std::string& name) : name_(name) {
     std::error_code ignored;
     const auto bytes = std::filesystem::file_size(name, ignored);
-    numbers_left_ = kMostPerByte * static_cast<double>(bytes);
+    numbers_left_ = std::min(kMostPerByte * static_cast<double>(bytes), kMostNumbers);
   }
 
   std::vector<MatVariable> read() {

@@ -220,6 +220,23 @@ TEST_F(Hdf5, RefusesEveryCutOfAFile) {
   }
 }
 
+TEST_F(Hdf5, RefusesAFileThatUnpacksToMoreThanAGibibyte) {
+  const hid_t out = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  write_vector(out, "padding", std::vector<double>(20'000, 1.0));
+  // Chunks that are never written cost nothing in the file.
+  const hsize_t rows = (hsize_t{1} << 27U) + 1;
+  const hsize_t chunk = 1 << 16U;
+  const hid_t space = H5Screate_simple(1, &rows, nullptr);
+  const hid_t packed = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(packed, 1, &chunk);
+  H5Pset_deflate(packed, 9);
+  H5Dclose(H5Dcreate2(out, "t_s", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, packed, H5P_DEFAULT));
+  H5Pclose(packed);
+  H5Sclose(space);
+  H5Fclose(out);
+  EXPECT_THAT(error(), HasSubstr("t_s is damaged or cut off"));
+}
+
 TEST_F(Hdf5, IsNamedWhereTheLibraryIsNotLinked) {
   write_mat({column("t_s", t_s_)});
   set_hdf5_reader(nullptr);
