@@ -155,7 +155,7 @@ const std::vector<Layer> kLayers{
      {"config", "daemon/control", "plant_sim", "estimator/greybox", "estimator/greybox/selection",
       "estimator/greybox/validation", "workbench/add", "workbench/compare", "workbench/control",
       "workbench/diagnose", "workbench/files", "workbench/fit", "workbench/laws", "workbench/live",
-      "workbench/present"},
+      "workbench/model", "workbench/present", "workbench/questions"},
      {"boost", "Eigen", "nlohmann", "spoolwatch"}},
     {"workbench/cli",
      {"config", "daemon/control", "plant_sim", "estimator", "estimator/fdi",

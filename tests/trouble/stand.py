@@ -13,14 +13,14 @@ import time
 class Daemon:
     """spoolwatchd with a configuration of config/; ends with the `with` block."""
 
-    def __init__(self, programs, config, settings=(), files=()):
+    def __init__(self, programs, config, settings=(), files=(), lcm_url=""):
         self.programs = pathlib.Path(programs)
         self.folder = tempfile.TemporaryDirectory(prefix="spoolwatch-trouble-")
         os.chmod(self.folder.name, 0o755)
         place = pathlib.Path(self.folder.name)
         self.socket = str(place / "control.sock")
         self.log = place / "log.txt"
-        command = [str(self.programs / "spoolwatchd"), "--config", str(config), "--lcm-url", ""]
+        command = [str(self.programs / "spoolwatchd"), "--config", str(config), "--lcm-url", lcm_url]
         for setting in (f"control.socket={self.socket}", f"alarms.folder={place}/alarms",
                         "evidence.folder=", "recorder.folder=", *settings):
             command += ["--set", setting]

@@ -125,41 +125,42 @@ void print_rods(const ordered_json& status, std::ostream& out) {
 }
 
 /// "disturbed by: force 29.8 N, pressure line 23 Hz, pressure line 99.1 kPa"
-void print_disturbance(const ordered_json& source, std::ostream& out) {
+std::string disturbance_line(const ordered_json& source) {
   const auto disturbance = source.find("disturbance");
-  if (disturbance == source.end() || !disturbance->is_object()) return;
-  const char* before = "    disturbed by: ";
+  if (disturbance == source.end() || !disturbance->is_object()) return {};
+  std::string line;
   for (const auto& [name, value] : disturbance->items()) {
     if (!value.is_number()) continue;
-    out << before << config::units::parameter_words(name) << ' '
-        << config::units::words(config::units::quantity(name, value.get<double>(), NAN));
-    before = ", ";
+    line += (line.empty() ? "disturbed by: " : ", ") + config::units::parameter_words(name) + ' ' +
+            config::units::words(config::units::quantity(name, value.get<double>(), NAN));
   }
-  out << '\n';
-}
-
-/// The smallest changes that would be seen now, and what would help where they are great.
-void print_detectable(const ordered_json& status, std::ostream& out) {
-  const auto sources = status.find("detectable");
-  if (sources == status.end() || !sources->is_array()) return;
-  for (const ordered_json& source : *sources) {
-    out << "  " << text_of(source, "source") << " would detect now:";
-    const char* before = " ";
-    for (const auto& [name, smallest] : source.at("smallest").items()) {
-      out << before << config::units::parameter_words(name) << ' '
-          << (smallest.is_number()
-                  ? config::units::words(config::units::quantity(name, smallest.get<double>(), NAN))
-                  : "not known");
-      before = ", ";
-    }
-    out << '\n';
-    const std::string why = text_of(source, "why");
-    if (!why.empty()) out << "    " << why << '\n';
-    print_disturbance(source, out);
-  }
+  return line;
 }
 
 }  // namespace
+
+std::vector<DetectableLines> detectable_lines(const ordered_json& status) {
+  std::vector<DetectableLines> lines;
+  const auto sources = status.find("detectable");
+  if (sources == status.end() || !sources->is_array()) return lines;
+  for (const ordered_json& source : *sources) {
+    DetectableLines one{text_of(source, "source") + " would detect now:", {}};
+    const char* before = " ";
+    for (const auto& [name, smallest] : source.at("smallest").items()) {
+      one.smallest +=
+          before + config::units::parameter_words(name) + ' ' +
+          (smallest.is_number()
+               ? config::units::words(config::units::quantity(name, smallest.get<double>(), NAN))
+               : "not known");
+      before = ", ";
+    }
+    for (const std::string& more : {text_of(source, "why"), disturbance_line(source)}) {
+      if (!more.empty()) one.more.push_back(more);
+    }
+    lines.push_back(std::move(one));
+  }
+  return lines;
+}
 
 void print_status(const ordered_json& status, std::ostream& out) {
   out << text_of(status, "rig_id") << ": " << text_of(status, "state");
@@ -179,7 +180,10 @@ void print_status(const ordered_json& status, std::ostream& out) {
       << number_of(status, "u_V", 1.0, " V") << '\n';
   print_rods(status, out);
   print_inputs(status, "inputs", "input", out);
-  print_detectable(status, out);
+  for (const DetectableLines& source : detectable_lines(status)) {
+    out << "  " << source.smallest << '\n';
+    for (const std::string& more : source.more) out << "    " << more << '\n';
+  }
   const auto alarms = status.find("active_alarms");
   if (alarms != status.end() && alarms->is_number_integer() && alarms->get<long long>() > 0) {
     const auto count = alarms->get<long long>();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/signals/nan.h"
+#include "config/units/quantity.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -19,6 +20,27 @@ selection::ParameterValue value_of(const DiagnosisReport& outcome, const std::st
 }
 
 }  // namespace
+
+LawAxes axes_of(const estimator::greybox::LawCurve& curve) {
+  const bool over_metres = curve.variable == "y_m" || curve.variable == "v_mps";
+  LawAxes axes;
+  axes.x_name = curve.variable == "v_mps" ? "velocity"
+                : curve.variable == "y_m" ? "position"
+                : curve.variable == "u_V" ? "command"
+                : curve.variable == "x_m" ? "opening"
+                                          : curve.variable;
+  axes.x_unit = (over_metres ? "m" : "") + config::units::unit_of(curve.variable);
+  axes.x_per = over_metres ? 1e3 : 1.0;
+  axes.y_name = config::units::axis_words(config::units::parameter_words(curve.quantity));
+  axes.y_unit = config::units::unit_of(curve.quantity);
+  if (curve.held) {
+    axes.held = "Drawn for " +
+                config::units::words(config::units::quantity(
+                    curve.held->variable, curve.held->value, config::signals::kNaN)) +
+                " of " + curve.held->variable + ".";
+  }
+  return axes;
+}
 
 std::vector<LearnedLaw> learned_laws(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;

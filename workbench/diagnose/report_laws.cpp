@@ -1,7 +1,6 @@
 // The section of the report that draws the laws that were learned.
 #include <cmath>
 
-#include "config/units/quantity.h"
 #include "estimator/greybox/kinematics.h"
 #include "workbench/diagnose/learned_curves.h"
 #include "workbench/diagnose/model_residuals.h"
@@ -44,24 +43,16 @@ Series points_of(const DiagnosisReport& outcome, const LearnedLaw& learned) {
 
 Plot law_plot(const DiagnosisReport& outcome, const LearnedLaw& learned) {
   const estimator::greybox::LawCurve& curve = learned.curve;
-  const bool over_metres = curve.variable == "y_m" || curve.variable == "v_mps";
-  const double per = over_metres ? 1e3 : 1.0;
-  const auto name_of = [](const std::string& dotted) {
-    return config::units::axis_words(config::units::parameter_words(dotted));
-  };
+  const LawAxes axes = axes_of(curve);
   Plot plot;
   plot.title = learned.law->effect.name;
-  plot.x = {curve.variable == "v_mps" ? "velocity"
-            : curve.variable == "y_m" ? "position"
-            : curve.variable == "u_V" ? "command"
-            : curve.variable == "x_m" ? "opening"
-                                      : curve.variable,
-            (over_metres ? "m" : "") + config::units::unit_of(curve.variable)};
-  plot.y = {name_of(curve.quantity), config::units::unit_of(curve.quantity)};
+  plot.x = {axes.x_name, axes.x_unit};
+  plot.y = {axes.y_name, axes.y_unit};
   Series points = points_of(outcome, learned);
-  points.x = scaled(std::move(points.x), per);
+  points.x = scaled(std::move(points.x), axes.x_per);
   if (!points.y.empty()) plot.series.push_back(std::move(points));
-  Series line{.name = "the law", .y = curve.f, .x = scaled(curve.x, per), .tone = Tone::model};
+  Series line{
+      .name = "the law", .y = curve.f, .x = scaled(curve.x, axes.x_per), .tone = Tone::model};
   for (std::size_t i = 0; i < curve.f.size(); ++i) {
     line.low.push_back(curve.f[i] - 2.0 * curve.std_error[i]);
     line.high.push_back(curve.f[i] + 2.0 * curve.std_error[i]);
@@ -70,12 +61,7 @@ Plot law_plot(const DiagnosisReport& outcome, const LearnedLaw& learned) {
   plot.series.push_back(std::move(line));
   plot.caption = learned.law->effect.what + ": " + learned.law->effect.formula +
                  ". The band is two standard errors; it ends where the records do.";
-  if (curve.held) {
-    plot.caption += " Drawn for " +
-                    config::units::words(config::units::quantity(curve.held->variable,
-                                                                 curve.held->value, std::nan(""))) +
-                    " of " + curve.held->variable + ".";
-  }
+  if (!axes.held.empty()) plot.caption += " " + axes.held;
   return plot;
 }
 

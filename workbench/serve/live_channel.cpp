@@ -23,6 +23,7 @@
 #include "workbench/live/listen_lines.h"
 #include "workbench/live/online_residual.h"
 #include "workbench/present/json.h"
+#include "workbench/serve/detectable.h"
 
 namespace workbench::serve {
 namespace {
@@ -37,8 +38,9 @@ constexpr std::chrono::seconds kStatus{1};
 constexpr std::chrono::seconds kFigures{3};  ///< a comparison over the last half minute
 constexpr std::chrono::seconds kRetry{1};
 constexpr double kHistory_s = 60.0;
-constexpr std::size_t kMostPoints = 60 * 1000;  ///< a kilohertz for the whole history
-constexpr std::uint64_t kMostBatch = 4000;      ///< points; some 200 kB of text
+/// The longest capture at 10 kHz; 3 kHz for the whole history.
+constexpr std::size_t kMostPoints = 200'000;
+constexpr std::uint64_t kMostBatch = 4000;  ///< points; some 200 kB of text
 constexpr std::size_t kMostSources = 50;
 
 double seconds_since(Clock::time_point then) {
@@ -73,7 +75,15 @@ class LiveListener final : public live::FeedListener {
   }
   void on(const spoolwatch::estimate_t& e) override {
     if (estimates_.size() < kMostSources || estimates_.count(e.source) > 0) {
-      estimates_[e.source] = ordered_json::parse(live::json(e), nullptr, false);
+      ordered_json& shown = estimates_[e.source];
+      shown = ordered_json::parse(live::json(e), nullptr, false);
+      shown["seen_down_ratio"] = shown["seen_up_ratio"] = ordered_json::array();
+      for (std::size_t i = 0; e.valid && i < e.value.size(); ++i) {
+        const DetectableChange seen =
+            detectable_change(e.value[i], e.std_error[i], e.low[i], e.high[i]);
+        shown["seen_down_ratio"].push_back(number_or_null(seen.down_ratio));
+        shown["seen_up_ratio"].push_back(number_or_null(seen.up_ratio));
+      }
     }
   }
   void on(const spoolwatch::alarm_t& a) override {
@@ -173,6 +183,7 @@ class LiveListener final : public live::FeedListener {
     for (const LivePoint& point : points_) {
       if (point.t_s >= span.from_s && point.t_s <= span.to_s) made->points.push_back(point);
     }
+    made->lacks_s = lacking_s(*made);
     capture_ = std::move(made);
   }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -39,6 +40,16 @@ std::string columns_json(const std::vector<LivePoint>& points, double t0_s) {
   return json;
 }
 
+double lacking_s(const Capture& capture) {
+  const auto first = std::find_if(capture.points.begin(), capture.points.end(),
+                                  [](const LivePoint& point) { return point.tick >= 0; });
+  if (first == capture.points.end()) return capture.span.to_s - capture.span.from_s;
+  // The stamps of two samples may be further apart than a period.
+  constexpr double kPeriods = 1.5;
+  const double lacks_s = first->t_s - capture.span.from_s;
+  return lacks_s > kPeriods * first->sample_time_s ? lacks_s : 0.0;
+}
+
 std::string to_json(const Capture& capture) {
   std::array<std::vector<double>, kChannels.size()> columns;
   std::vector<const std::vector<double>*> all;
@@ -54,9 +65,10 @@ std::string to_json(const Capture& capture) {
   }
   const TriggerSettings& s = capture.settings;
   return fmt::format(
-             "{{\"number\":{},\"channel\":{},\"level\":{},\"from\":{},\"to\":{},\"samples\":{},",
+             "{{\"number\":{},\"channel\":{},\"level\":{},\"lacks_s\":{:.4g},\"from\":{},\"to\":{},"
+             "\"samples\":{},",
              capture.number, present::json_string(s.channel), present::json_number(s.level),
-             present::json_number(capture.span.from_s - capture.span.at_s),
+             capture.lacks_s, present::json_number(capture.span.from_s - capture.span.at_s),
              present::json_number(capture.span.to_s - capture.span.at_s), capture.points.size()) +
          columns_json(drawn, capture.span.at_s) + "}";
 }

@@ -34,7 +34,11 @@ struct Capture {
   TriggerSettings settings;
   Trigger::Span span{};
   std::vector<LivePoint> points;
+  double lacks_s = 0.0;  ///< of its beginning, for which no sample was kept
 };
+
+/// How much of the span lies before the first point, where that is more than one period.
+[[nodiscard]] double lacking_s(const Capture& capture);
 
 /// For the page: as columns_json(), times after the crossing, thinned so that no peak is lost.
 [[nodiscard]] std::string to_json(const Capture& capture);

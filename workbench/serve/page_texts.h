@@ -9,8 +9,10 @@ namespace workbench::serve {
 [[nodiscard]] std::string_view page_sheet();
 [[nodiscard]] std::string_view page_app();
 [[nodiscard]] std::string_view page_server();
+[[nodiscard]] std::string_view page_stream();
 [[nodiscard]] std::string_view page_plots();
 [[nodiscard]] std::string_view page_workbench();
+[[nodiscard]] std::string_view page_make();
 [[nodiscard]] std::string_view page_sliders();
 [[nodiscard]] std::string_view page_ladder();
 [[nodiscard]] std::string_view page_laws();

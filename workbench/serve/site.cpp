@@ -2,6 +2,8 @@
 
 #include "config/schema/error.h"
 #include "workbench/control/order.h"
+#include "workbench/model/kinds.h"
+#include "workbench/present/json.h"
 #include "workbench/serve/page_files.h"
 #include "workbench/serve/request_fields.h"
 
@@ -35,6 +37,23 @@ bool starts(const std::string& text, std::string_view with) {
 HttpResponse refusal_of(const std::exception& error) {
   const bool usage = dynamic_cast<const config::schema::Error*>(&error) != nullptr;
   return refusal(usage ? 422 : 500, usage ? error.what() : "the request failed");
+}
+
+/// The kinds of models that can be made, with the questions of each.
+Json kinds_json() {
+  Json out = Json::array();
+  for (const model::Kind& kind : model::kinds()) {
+    Json questions = Json::array();
+    for (const model::Question& q : kind.questions) {
+      questions.push_back({{"flag", q.flag},
+                           {"what", q.what},
+                           {"where", q.where},
+                           {"allowed", questions::allowed(q)},
+                           {"usual", present::number_or_null(q.usual)}});
+    }
+    out.push_back({{"name", kind.name}, {"what", kind.what}, {"questions", questions}});
+  }
+  return out;
 }
 
 }  // namespace
@@ -110,6 +129,7 @@ void Site::answer_read(const HttpHead& head, const HttpReply& reply) {
     return on_study(
         reply, [this] { return whole_state(); }, false);
   }
+  if (head.path == "/api/kinds") return reply(json_response(kinds_json()));
   if (head.path == "/api/events") {
     HttpResponse stream;
     stream.topics = kWorkbenchTopic | (head.query == "live" ? kLiveTopic : 0);
@@ -200,6 +220,9 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   if (path == "/api/model") return change([=, this] { study_.open_model(text_in(*body, "name")); });
   if (path == "/api/shipped") {
     return change([=, this] { study_.open_shipped(text_in(*body, "name")); });
+  }
+  if (path == "/api/new") {
+    return change([=, this] { study_.make_model(text_in(*body, "kind"), values_in(*body)); });
   }
   if (path == "/api/ignore") return change([=, this] { study_.ignore(texts_in(*body, "spans")); });
   if (path == "/api/add") return change([=, this] { study_.add_effect(text_in(*body, "effect")); });

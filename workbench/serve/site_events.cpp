@@ -2,7 +2,9 @@
 #include <chrono>
 #include <iostream>
 
+#include "workbench/control/answer_text.h"
 #include "workbench/control/order.h"
+#include "workbench/present/text.h"
 #include "workbench/serve/site.h"
 
 namespace workbench::serve {
@@ -76,6 +78,13 @@ void Site::poll_control() {
       out = control::ask_daemon(options_.control_socket,
                                 {{protocol::key::kCommand, protocol::kAlarms}});
       out["control"] = "";
+      out["detectable"] = Json::array();
+      const Json status = control::ask_daemon(options_.control_socket,
+                                              {{protocol::key::kCommand, protocol::kStatus}});
+      for (const control::DetectableLines& source : control::detectable_lines(status)) {
+        out["detectable"].push_back(
+            {{"smallest", present::typeset(source.smallest)}, {"more", source.more}});
+      }
     } catch (const std::exception& error) {
       out["control"] = error.what();
     }

@@ -91,7 +91,7 @@ Study::Study(const SessionFolder& folder) : folder_(folder) {
     }
   }
   try {
-    show(std::move(next));
+    show(std::move(next), false);  // a full disk keeps nobody from looking
   } catch (const config::schema::Error&) {
     // Files were renamed or changed meanwhile: the session begins without them.
   }
@@ -131,7 +131,7 @@ void Study::note_errors(Open& next, const std::string& model, const std::optiona
   node.noise_floor_m = shown->comparison.noise_floor_m;
 }
 
-void Study::show(Open next) {
+void Study::show(Open next, bool saves) {
   next.shown.reset();
   next.live_rotary = false;
   if (!next.model.empty()) {
@@ -152,7 +152,7 @@ void Study::show(Open next) {
   }
   note_errors(next, next.model, accepted);
   note_errors(next, next.trial, tried);
-  save(next);
+  if (saves) save(next);
   open_ = std::move(next);
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
@@ -198,6 +198,27 @@ void Study::open_shipped(const std::string& name) {
     return made.keep();
   }
   throw UsageError("no model of that name comes with the program");
+}
+
+void Study::make_model(const std::string& kind_name, const model::Answers& answers) {
+  const model::Kind& kind = model::find_kind(kind_name);
+  model::check_answers(kind, answers);
+  const std::string file = folder_.fresh_name(kind.name + ".toml");
+  std::vector<std::string> words{"spoolwatch", "new", kind.name, "-o", file};
+  for (const auto& [flag, value] : answers) {
+    words.insert(words.end(), {"--" + flag, add::number_text(value)});
+  }
+  const std::string command = command_of(words);
+  config::record::write_whole(folder_.path_of(file),
+                              model::model_text(kind, answers, stem(file), command));
+  MadeFile made(folder_.path_of(file));
+  Open next = open_;
+  next.model = file;
+  next.trial.clear();
+  next.lineage.add(file, "", "from data sheets");
+  next.lineage.remember(command);
+  show(std::move(next));
+  made.keep();
 }
 
 void Study::ignore(const std::vector<std::string>& spans) {

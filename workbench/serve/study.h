@@ -15,6 +15,7 @@
 #include "workbench/compare/request.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/fit/request.h"
+#include "workbench/model/kinds.h"
 #include "workbench/serve/lineage.h"
 #include "workbench/serve/session_folder.h"
 
@@ -45,6 +46,9 @@ class Study {
   void open_model(const std::string& model);
   /// Copies a shipped model into the folder and opens it.
   void open_shipped(const std::string& name);
+  /// Makes a model file from the numbers of data sheets and opens it; what is left open has its
+  /// usual value.
+  void make_model(const std::string& kind, const model::Answers& answers);
   /// "from:to" in s: samples that neither count nor are fitted.
   void ignore(const std::vector<std::string>& spans);
   /// The model with an effect of typical size, as a trial.
@@ -99,7 +103,7 @@ class Study {
   [[nodiscard]] std::optional<Shown> shown_of(const std::string& record, const std::string& model,
                                               const std::vector<std::string>& ignored) const;
   /// Compares and saves `next`, then takes it.
-  void show(Open next);
+  void show(Open next, bool saves = true);
   /// As accepted: `model` without a trial.
   void show_model(const std::string& model);
   static void note_errors(Open& next, const std::string& model, const std::optional<Shown>& shown);

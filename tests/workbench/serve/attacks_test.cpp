@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "tests/workbench/serve/loopback.h"
 #include "workbench/serve/gate.h"
@@ -161,6 +162,37 @@ TEST_F(Attack, ByPathsOutOfTheFolder) {
               422)
         << name;
   }
+}
+
+TEST_F(Attack, OfFourPagesThatMoveASliderThirtyTimesASecond) {
+  ASSERT_EQ(page.post("record", {{"name", "record.csv"}}).status, 200);
+  before_ = page.everything();
+  std::atomic<int> answered{0};
+  std::atomic<int> superseded{0};
+  std::vector<std::thread> pages;
+  for (int p = 0; p < 4; ++p) {
+    pages.emplace_back([&, p] {
+      auto next = std::chrono::steady_clock::now();
+      for (int i = 0; i < 60; ++i) {
+        const double damping = 900.0 + p + i;
+        const Answer answer =
+            page.post("preview", {{"values", {{"damping_N_s_per_m", damping}}}, {"rows", 2000}});
+        EXPECT_EQ(answer.status, 200);
+        (answer.body.find("superseded") == std::string::npos ? answered : superseded) += 1;
+        next += std::chrono::milliseconds(33);
+        std::this_thread::sleep_until(next);
+      }
+    });
+  }
+  for (int i = 0; i < 10; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(page.ask("GET", "/").status, 200);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  }
+  for (std::thread& one : pages) one.join();
+  EXPECT_EQ(answered + superseded, 240);
+  EXPECT_GT(answered, 0);
 }
 
 TEST_F(Attack, ByFilesThatAreNoRecords) {

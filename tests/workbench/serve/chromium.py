@@ -77,8 +77,9 @@ class Browser:
         line, self.bytes = self.bytes.split(b"\0", 1)
         return json.loads(line)
 
-    def page(self, url="about:blank", width=1280, height=800, dark=False):
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+    def page(self, url="about:blank", width=1280, height=800, dark=False, window=False):
+        """A tab, which hides the others of its window, or a `window` of its own."""
+        target = self.call("Target.createTarget", url="about:blank", newWindow=window)["targetId"]
         session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         return Page(self, session, target, url, width, height, dark)
 
@@ -143,6 +144,16 @@ class Page:
                   f"{json.dumps(text)}) && !b.disabled)")
         self.wait(f"Boolean({script})")
         self.run(script + ".click()")
+
+    def key(self, selector, key):
+        self.run(f"document.querySelector({json.dumps(selector)}).focus()")
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, **({"text": key} if len(key) == 1 else {}))
+
+    def type(self, selector, text, event="input"):
+        self.wait(f"document.querySelector({json.dumps(selector)})")
+        self.run(f"(() => {{ const s = document.querySelector({json.dumps(selector)}); s.value = {json.dumps(text)};"
+                 f" s.dispatchEvent(new Event('{event}', {{bubbles: true}})); }})()")
 
     def choose(self, selector, value):
         self.wait(f"[...document.querySelectorAll({json.dumps(selector + ' option')})]"

@@ -123,7 +123,11 @@ TEST(LiveChannel, EachPageCatchesUpWithTheLastMinuteByItself) {
   channel.open(1);
   const std::size_t of_first = inboxes.when_it_has(1, kAll - kRate_Hz).size();
   channel.open(2);
-  const std::vector<Sent> second = inboxes.when_it_has(2, kMinute - 10);
+  std::vector<Sent> second = inboxes.when_it_has(2, kMinute - 10);
+  for (int i = 0; i < 500 && times_of(second).back() < kSeconds - 1.5 / kRate_Hz; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    second = inboxes.when_it_has(2, kMinute - 10);
+  }
   // The default of HttpLimits holds ten of them for a client that is slow.
   constexpr std::size_t kMostBytes = HttpLimits{}.stream_bytes / 8;
   for (const Sent& one : second) {

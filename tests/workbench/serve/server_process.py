@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import signal
 import subprocess
 
@@ -13,10 +14,13 @@ class NoPage(Exception):
 
 
 class Server:
-    def __init__(self, program, folder, *options):
+    def __init__(self, program, folder, *options, environment=None, files=None):
+        """`files`: most descriptors that it may have."""
         self.folder = pathlib.Path(folder)
+        limit = (lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))) if files else None
         self.process = subprocess.Popen([program, "serve", "--folder", str(folder), *options], text=True,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit,
+                                        env={**os.environ, **(environment or {})})
         self.url = re.match(r"Open (\S+)", self.process.stdout.readline() or "Open none").group(1)
         if self.url == "none":
             why = self.process.stderr.read().strip()

@@ -14,7 +14,36 @@ from browser_test import expect  # noqa: E402
 from chromium import Browser  # noqa: E402
 from server_process import Server  # noqa: E402
 
-HOSTILE = "<img src=x onerror=alert(1)><script>.csv"
+HOSTILE = "<img src=x onerror=alert(1)><script>"
+# Every text of a model that a page shows.
+HOSTILE_MODEL = f"""schema_version = 1
+name = "{HOSTILE}"
+plant = "velocity_servo"
+[parameters]
+gain_mps_per_V = 0.05
+time_constant_s = 0.01
+[effects.hostile]
+[formula_effects.hostile]
+site = "opening"
+formula = "(1 + c) * x_m"
+what = "{HOSTILE}"
+[formula_effects.hostile.parameters.c]
+what = "{HOSTILE}"
+min = -1.0
+max = 1.0
+typical = 0.1
+neutral = 0.0
+"""
+DRAW_A_LAW = """(async () => {
+  const {html, render} = await import('/preact.js'), {Law} = await import('/laws.js');
+  const place = document.body.appendChild(document.createElement('div'));
+  const law = {title: 'drag', note: '', x: 'velocity, mm/s', y: 'force, N', model: {x: [0, 1, 2], y: [0, 1, 8]},
+               low: [null, 0.5, 7], high: [null, 1.5, 9]};
+  render(html`<${Law} law=${law} />`, place);
+  const band = place.querySelector('path.band').getAttribute('d');
+  place.remove();
+  return band;
+})()"""
 
 
 def figure(page, label):
@@ -75,6 +104,18 @@ def story(args, folder):
         page.click(".bands button")
         page.wait("!document.querySelector('.bands button')")
 
+        # The same by the keyboard: nearer, along, out, and what is shown is left out.
+        count = page.run("Number(document.querySelector('.stack').dataset.drawn)")
+        for key in ("+", "ArrowRight", "-", "+"):
+            page.key(".stack", key)
+            count = drawn(page, count)
+        page.click_text("Leave out what is shown")
+        page.wait("document.querySelector('.bands button')")
+        page.click(".bands button")
+        page.wait("!document.querySelector('.bands button')")
+        page.key(".stack", "0")
+        page.wait("([...document.querySelectorAll('button')].find((b) => b.textContent === 'Whole record').disabled)")
+
         # What is missing: progress, the trial, the fallen error, acceptance.
         page.click_text("Diagnose")
         page.wait("document.querySelector('.progress') || document.querySelector('.result')")
@@ -123,13 +164,39 @@ def story(args, folder):
         picture(page, "accepted")
 
         # Mistakes are told in a line, names of files are text.
-        (folder / HOSTILE).write_text((tour / "steps.csv").read_text())
-        page.drop_files("#upload", [folder / HOSTILE])
+        hostile = folder / (HOSTILE + ".csv")
+        hostile.write_text((tour / "steps.csv").read_text())
+        page.drop_files("#upload", [hostile])
         page.wait("document.querySelector('#record').value.startsWith('<img')")
+        hostile = folder / (HOSTILE + ".toml")
+        hostile.write_text(HOSTILE_MODEL)
+        page.drop_files("#upload", [hostile])
+        page.wait("document.querySelector('#model').value.startsWith('<img')")
+        page.wait("document.querySelector('.sliders').innerText.includes('hostile')")
+        page.run("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+        page.click_text("Write a report")
+        page.wait("document.querySelector('.message')")
+        report = max((folder / "session").glob("*.html"), key=lambda file: file.stat().st_mtime).read_text()
+        expect("the report has no element of a name", "<img src=x" not in report)
         (folder / "bad.csv").write_text("t_s,u_V,y_m\n0,1,2\n0.01,x,3\n")
         page.drop_files("#upload", [folder / "bad.csv"])
         page.wait("document.querySelector('[role=alert]')")
         expect("no element came from a name", page.run("document.querySelectorAll('#app img, #app script').length") == 0)
+
+        # A model from the numbers of data sheets; what is missing is named.
+        page.run("document.querySelector('details.make').open = false")
+        page.click("details.make summary")
+        page.choose("#kind", "velocity-servo")
+        page.type("#new-full-speed-mmps", "500")
+        page.type("#new-lag-ms", "12,5")
+        page.click_text("Make velocity-servo.toml")
+        page.wait("document.querySelector('#model').value === 'velocity-servo.toml'")
+        made = (folder / "session" / "velocity-servo.toml").read_text()
+        for text in ("gain_mps_per_V = 0.05", "time_constant_s = 0.0125",
+                     "spoolwatch new velocity-servo -o velocity-servo.toml"):
+            expect(f"{text} in {made}", text in made)
+
+        expect("a band with a law", page.run(DRAW_A_LAW).count("L") == 3)
 
         # Cancel ends a diagnosis with the best so far; the page may be gone meanwhile.
         page.choose("#record", "multisine.csv")
@@ -149,6 +216,8 @@ def story(args, folder):
         expect(f"nothing is asked of another host: {asked}",
                all(one.startswith(f"http://127.0.0.1:{server.port}/") for one in asked))
         script = (folder / "session" / "commands.sh").read_text()
+        expect("no file of the session knows the token", not any(
+            server.token in file.read_text(errors="replace") for file in (folder / "session").iterdir()))
         expect("the server ends", server.end() == 0)
 
     # The script of the session does the same without a page.

@@ -16,10 +16,10 @@ function rows(alarms, status) {
 
 const clock = (text) => {
   const time = new Date(text);
-  return text && !isNaN(time) ? time.toLocaleString('sv-SE').replace(/^.* /, 'since ') : '';
+  return text && !isNaN(time) ? ', came ' + time.toTimeString().slice(0, 8) : '';
 };
 
-export function Alarms({alarms, status, orders}) {
+export function Alarms({alarms, status, orders, stale}) {
   const [said, say] = useState('');
   const order = async (body) => {
     try {
@@ -35,10 +35,12 @@ export function Alarms({alarms, status, orders}) {
     <section class="alarms">
       <h2>Alarms</h2>
       ${said && html`<p class="warn" role="alert">${said}</p>`}
-      ${list.length === 0 && html`<p class="hint">none</p>`}
+      ${list.length === 0 && html`<p class=${reachable && !stale ? 'hint' : 'warn'}>
+        ${stale ? 'not known: nothing is heard' : reachable ? 'none' : 'none heard of; those from before are not known'}</p>`}
+      ${list.length > 0 && stale && html`<p class="warn">as they were last heard</p>`}
       <ul>${list.map((a) => html`
         <li key=${a.name} class=${a.severity}>
-          <b>${a.name}</b> <small>${a.life.toLowerCase()}, ${a.severity} ${clock(a.came)}</small>
+          <b>${a.name}</b> <small>${a.life.toLowerCase()}${a.severity === 'OK' ? '' : ', ' + a.severity}${clock(a.came)}</small>
           <p>${a.reason}</p>${a.guidance && html`<p class="hint">${a.guidance}</p>`}
           ${orders && reachable && html`<p class="row">
             <button onClick=${() => order({order: 'ack', alarm: a.name})}>Acknowledge</button>

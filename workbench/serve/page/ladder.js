@@ -31,16 +31,16 @@ export function Ladder({state, open, beside}) {
       <h2>Models and their error</h2>
       <p class="hint">On blocks that were not fitted; logarithmic. The line is the noise floor.</p>
       <ol>${nodes.map((node) => html`
-        <li key=${node.model} class=${node.model === state.trial ? 'trial' :
-                                      node.model === state.model ? 'current' : ''}>
-          <button class="plain" style=${{paddingLeft: 0.9 * Math.min(node.depth, 6) + 'em'}}
-                  onClick=${() => open(node.model)}
+        <li key=${node.model} style=${{'--depth': Math.min(node.depth, 6)}} class=${
+          (node.depth ? 'child ' : '') + (node.model === state.trial ? 'trial' :
+          node.model === state.model ? 'current' : '')}>
+          <button class="plain" onClick=${() => open(node.model)}
                   aria-current=${node.model === state.model}>${node.model}</button>
-          <span class="what">${node.model === state.trial ? 'trial: ' : ''}${node.what}</span>
           ${node.model !== (state.trial || state.model) && html`
             <button class="beside" aria-pressed=${Boolean(state.beside) && state.beside.model === node.model}
                     onClick=${() => beside(state.beside && state.beside.model === node.model ? '' : node.model)}
                     aria-label=${'beside ' + node.model}>beside</button>`}
+          <span class="what">${node.model === state.trial ? 'trial: ' : ''}${node.what}</span>
           ${node.heldout_m > 0 && html`
             <span class="bar"><i style=${{width: 100 * share(node.heldout_m, floor, worst) + '%'}}></i>
               ${floor > 0 && html`<b style=${{left: 100 * share(floor, floor, worst) + '%'}}></b>`}</span>

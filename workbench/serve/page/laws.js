@@ -41,16 +41,29 @@ export function path({x, y}, across, up) {
   return text;
 }
 
-function Law({law, beside}) {
+/// The area between two curves; without one of them nothing.
+function area(x, low, high, across, up) {
+  const known = x.map((v, i) => i).filter((i) => low[i] != null && high[i] != null);
+  if (known.length < 2) return '';
+  const point = (i, list) => across(x[i]).toFixed(1) + ' ' + up(list[i]).toFixed(1);
+  return 'M' + [...known.map((i) => point(i, high)), ...known.reverse().map((i) => point(i, low))].join('L') + 'Z';
+}
+
+/// law: {title, note, x, y, model} and where there are some samples, mean, before, low and high, a band
+/// about the model.
+export function Law({law, beside}) {
   const lists = [law.model, law.mean, law.before, law.samples].filter(Boolean);
-  const xs = range(...lists.map((one) => one.x)), ys = range(...lists.map((one) => one.y));
+  const xs = range(...lists.map((one) => one.x));
+  const ys = range(...lists.map((one) => one.y), law.low || [], law.high || []);
   if (!xs || !ys) return null;
   const across = (v) => LEFT + (v - xs[0]) / (xs[1] - xs[0]) * (WIDTH - LEFT - RIGHT);
   const up = (v) => HEIGHT - BOTTOM - (v - ys[0]) / (ys[1] - ys[0]) * (HEIGHT - TOP - BOTTOM);
-  const dots = law.samples.x.map((v, i) => (law.samples.y[i] == null ? ''
-    : `M${across(v).toFixed(1)} ${up(law.samples.y[i]).toFixed(1)}h0`)).join('');
-  const keys = [['dot', 'samples', law.samples.x.length], ['mean', 'their mean', law.mean.x.length],
-                ['before', beside || 'model before', law.before], ['model', 'model', true]].filter((k) => k[2]);
+  const none = {x: [], y: []}, samples = law.samples || none, mean = law.mean || none;
+  const dots = samples.x.map((v, i) => (samples.y[i] == null ? ''
+    : `M${across(v).toFixed(1)} ${up(samples.y[i]).toFixed(1)}h0`)).join('');
+  const keys = [['dot', 'samples', samples.x.length], ['mean', 'their mean', mean.x.length],
+                ['before', beside || 'model before', law.before], ['model', law.key || 'model', true],
+                ['band', 'two standard errors', law.low]].filter((k) => k[2]);
   return html`
     <figure class="law-curve">
       <figcaption><b>${law.title}</b> <small>${law.note}</small></figcaption>
@@ -64,9 +77,10 @@ function Law({law, beside}) {
         <text x=${(LEFT + WIDTH - RIGHT) / 2} y=${HEIGHT - 6} text-anchor="middle">${law.x}</text>
         <text transform=${`translate(13 ${(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)`}
               text-anchor="middle">${law.y}</text>
+        ${law.low && html`<path class="band" d=${area(law.model.x, law.low, law.high, across, up)} />`}
         <path class="dots" d=${dots} />
         ${law.before && html`<path class="before" d=${path(law.before, across, up)} />`}
-        <path class="mean" d=${path(law.mean, across, up)} />
+        <path class="mean" d=${path(mean, across, up)} />
         <path class="model" d=${path(law.model, across, up)} />
       </svg>
       <p class="keys">${keys.map(([kind, text]) => html`<span class=${kind}>${text}</span>`)}</p>

@@ -36,7 +36,12 @@ function meter(values) {
 
 const clockOf = (t) => new Date(1000 * t).toTimeString().slice(0, 8);
 
-const shown = (v) => (v == null || !Number.isFinite(v) ? '' : String(+v.toPrecision(4)));
+// Four digits, with a power of ten where that is shorter.
+const shown = (v) => {
+  if (v == null || !Number.isFinite(v)) return '';
+  const plain = String(+v.toPrecision(4));
+  return plain.length <= 8 ? plain : (+v.toPrecision(4)).toExponential().replace('e+', 'e');
+};
 
 function Meters({meters, units}) {
   const names = {reference: 'reference, ' + units.position, y: 'position, ' + units.position,
@@ -48,21 +53,53 @@ function Meters({meters, units}) {
           <td class="n">${shown(meters[key] && meters[key][what])}</td>`)}</tr>`)}</tbody></table>`;
 }
 
+const percent = (ratio) => shown(+(100 * ratio).toPrecision(2)) + ' %';
+
+/// The smallest change that an alarm would show now.
+function seen(r) {
+  if (!r.valid) return html`<span class="warn">nothing: ${r.reason}</span>`;
+  if (r.down === 0 || r.up === 0) return 'it is outside its band';
+  const sides = [r.down != null && '−' + percent(r.down), r.up != null && '+' + percent(r.up)].filter(Boolean);
+  return sides.length ? sides.join(' or ') : html`<span class="hint">–</span>`;
+}
+
+/// With as many digits as the standard error leaves.
+function withError(value, error) {
+  if (!(error > 0) || !Number.isFinite(value)) return shown(value);
+  const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
+  const unit = power < -3 || power > 5 ? 10 ** power : 1;
+  const digits = Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error / unit))));
+  const text = (value / unit).toFixed(digits) + ' ± ' + (error / unit).toFixed(digits);
+  return unit === 1 ? text : '(' + text + ')e' + power;
+}
+
 function Estimates({status}) {
   const list = (status && status.estimates) || [];
   const rows = list.flatMap((e) => e.name.map((name, i) => ({
     name: e.source + '.' + name, valid: e.valid, reason: e.reason, value: e.value[i], error: e.std_error[i],
-    low: e.low[i], high: e.high[i]})));
+    low: e.low[i], high: e.high[i], down: e.seen_down_ratio[i], up: e.seen_up_ratio[i]})));
   if (rows.length === 0) return null;
   return html`
-    <section class="estimates"><h2>Estimates</h2>
-      <table><thead><tr><th></th><th>value</th><th>band</th></tr></thead>
+    <section class="estimates"><h2>Estimates, and what would be detected now</h2>
+      <table><thead><tr><th></th><th>value</th><th>band</th><th>change seen from</th></tr></thead>
         <tbody>${rows.slice(0, 40).map((r) => html`
           <tr class=${r.valid && (r.value < r.low && r.low !== null || r.value > r.high && r.high !== null)
-              ? 'outside' : ''}><td title=${r.reason}>${r.name}</td>
-            <td class="n">${r.valid ? shown(r.value) + (r.error ? ' ± ' + shown(r.error) : '') : 'not valid'}</td>
+              ? 'outside' : ''}><td>${r.name}</td>
+            <td class="n">${r.valid ? withError(r.value, r.error) : '-'}</td>
             <td class="n">${r.low === null && r.high === null ? ''
-              : shown(r.low) + ' to ' + shown(r.high)}</td></tr>`)}</tbody></table>
+              : shown(r.low) + ' to ' + shown(r.high)}</td>
+            <td>${seen(r)}</td></tr>`)}</tbody></table>
+    </section>`;
+}
+
+/// What the daemon's trackers would show, as `spoolwatch status` says it.
+function Detectable({alarms}) {
+  const sources = (alarms && alarms.detectable) || [];
+  if (sources.length === 0) return null;
+  return html`
+    <section class="detectable"><h2>Would be detected now</h2>
+      ${sources.map((one) => html`<p>${one.smallest}</p>
+        ${one.more.map((line) => html`<p class="hint">${line}</p>`)}`)}
     </section>`;
 }
 
@@ -74,7 +111,7 @@ function Model({status, model, units}) {
   }
   const um = (v) => (v == null ? '-' : shown(1e6 * v) + ' ' + units.error);
   return html`
-    <section><h2>Model beside the stand</h2>
+    <section class="beside-model"><h2>Model beside the stand</h2>
       <p><b>${model}</b>${status && status.model_note ? ': ' + status.model_note : ''}</p>
       ${m && html`
         <p>error ${um(m.rms_m)}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor</p>
@@ -224,12 +261,15 @@ export function Live({feed, link, state, openWorkbench}) {
         <${TriggerTools} status=${status} units=${units} capture=${capture} onSaved=${setSaved}
           onShow=${(on) => { setView(null); showCaptured(on); }} />
         ${captured && capture && html`
-          <p class="captured">capture ${capture.number}: ${capture.samples} samples, crossing at ${clockOf(capture.t0)}</p>`}
+          <p class="captured">capture ${capture.number}: ${capture.samples} samples, crossing at ${clockOf(capture.t0)}
+            ${capture.lacks_s > 0 && html` <span class="warn">its first ${shown(capture.lacks_s)} s are missing: no
+              sample of them was kept</span>`}</p>`}
         ${saved && html`<p class="saved">saved as <b>${saved}</b>${' '}
           <button onClick=${open}>Open in the workbench</button>
           ${' '}<span class="warn">${refused}</span></p>`}
         <div class="stack" ref=${element}></div>
         <${Meters} meters=${meters} units=${units} />
+        <${Estimates} status=${status} />
       </div>
       <div class="side">
         <section><h2>Loop</h2>
@@ -239,9 +279,9 @@ export function Live({feed, link, state, openWorkbench}) {
           ${status && status.lost > 0 && html`<p class="warn">${status.lost} messages lost</p>`}
           ${status && status.notice && html`<p class="hint">${status.notice}</p>`}
         </section>
-        <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} />
+        <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} stale=${stale} />
         <${Model} status=${status} model=${state.model} units=${units} />
-        <${Estimates} status=${status} />
+        <${Detectable} alarms=${stale ? null : alarms} />
       </div>
     </main>`;
 }

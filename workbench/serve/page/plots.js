@@ -110,13 +110,38 @@ export class PlotStack {
       }
     });
     this.sizes.observe(element);
+    // A sheet of A4 between its margins.
+    this.print = () => this.plots.forEach((plot, i) => plot.setSize({width: 680, height: specs[i].height}));
+    this.printed = () => this.plots.forEach((plot, i) => plot.setSize({width: element.clientWidth || 600,
+                                                                        height: specs[i].height}));
+    addEventListener('beforeprint', this.print);
+    addEventListener('afterprint', this.printed);
     this.theme = matchMedia('(prefers-color-scheme: dark)');
     this.repaint = () => {
-      if (this.shown) this.plots.forEach((plot) => plot.redraw());
+      this.plots.forEach((plot, i) => {
+        plot.root.querySelectorAll('.u-marker').forEach((marker, k) => {
+          if (k > 0) marker.style.borderColor = colour(specs[i].series[k - 1].tone);
+        });
+        if (this.shown) plot.redraw();
+      });
     };
     this.theme.addEventListener('change', this.repaint);
+    this.range = null;  // shown, in s
     if (onZoom) {
       for (const plot of this.plots) plot.over.addEventListener('dblclick', () => onZoom(null, null));
+      element.tabIndex = 0;
+      element.setAttribute('role', 'group');
+      element.setAttribute('aria-label', 'plots over time: arrows move, plus and minus zoom, 0 shows all');
+      element.addEventListener('keydown', (e) => {
+        if (!this.range || e.ctrlKey || e.metaKey || e.altKey) return;
+        const [from, to] = this.range, part = (to - from) / 4;
+        const next = {ArrowLeft: [from - part, to - part], ArrowRight: [from + part, to + part],
+                      '+': [from + part, to - part], '-': [from - 2 * part, to + 2 * part],
+                      0: [null, null]}[e.key === '=' ? '+' : e.key];
+        if (!next) return;
+        e.preventDefault();
+        onZoom(...next);
+      });
     }
   }
 
@@ -124,6 +149,7 @@ export class PlotStack {
   show(columns, from, to, count = this.plots.length) {
     const empty = columns.t.map(() => null);
     this.shown = true;
+    this.range = [from, to];
     this.plots.slice(0, count).forEach((plot, i) => {
       const data = [columns.t, ...this.specs[i].series.map((s) => columns[s.key] || empty)];
       plot.batch(() => {
@@ -150,6 +176,8 @@ export class PlotStack {
 
   end() {
     this.sizes.disconnect();
+    removeEventListener('beforeprint', this.print);
+    removeEventListener('afterprint', this.printed);
     this.theme.removeEventListener('change', this.repaint);
     this.plots.forEach((plot) => plot.destroy());
   }

@@ -1,5 +1,6 @@
 // What a diagnosis or a fit has found: words, the candidates with the error that each would reach,
 // the law that was learned.
+import {Law} from '/laws.js';
 import {html} from '/preact.js';
 
 function Candidates({result, run, running}) {
@@ -42,7 +43,8 @@ export function Result({result, run, running}) {
       ${result.interrupted && html`<p class="warn">Interrupted: the best so far.</p>`}
       <p class="words">${result.words}</p>
       ${(result.laws || []).map((law) => html`
-        <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>`)}
+        <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>
+        <${Law} law=${{...law.curve, title: law.name, key: 'the law'}} />`)}
       <${Steps} result=${result} />
       <${Candidates} result=${result} run=${run} running=${running} />
       ${result.remarks && result.remarks.length > 0 && html`

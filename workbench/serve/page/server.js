@@ -1,4 +1,5 @@
 // Talk with the process that serves this page: requests, uploads, events.
+import {Stream} from '/stream.js';
 
 let change = '';  // what every change must carry
 
@@ -20,6 +21,9 @@ export async function enter() {
   change = state.change;
   return state;
 }
+
+/// The kinds of models that can be made, with the questions of each.
+export async function kinds() { return answer(await fetch('/api/kinds')); }
 
 export async function post(path, body = {}) {
   return answer(await fetch('/api/' + path, {
@@ -57,55 +61,49 @@ export function latest(run) {
 
 const SILENT_MS = 3000;
 
-/// Events while the page is seen: a hidden page closes its stream and begins again when it is seen.
+/// The way to the stream: {postMessage}, and `take` for what comes.
+function connect(take) {
+  try {
+    const {port} = new SharedWorker('/stream.js', {type: 'module', name: 'spoolwatch'});
+    port.onmessage = ({data}) => take(data);
+    return port;
+  } catch {
+    const stream = new Stream(), page = {postMessage: take};
+    return {postMessage: (wish) => stream.set(page, wish)};
+  }
+}
+
+/// Events while the page is seen: a hidden page leaves the stream and comes back when it is seen.
 /// handlers: {name: (data) => ...}, among them `link({alive, since})`. Returns a function that ends it.
 export function listen(live, handlers) {
-  let source = null, heard = Date.now(), alive = null, again = null, pause = 500;
+  let heard = Date.now(), alive = null;
   const link = (now) => {
     if (now === alive) return;
     alive = now;
     handlers.link({alive, since: new Date(heard)});
   };
-  const take = (name) => (event) => {
+  const stream = connect(({name, data}) => {
     heard = Date.now();
-    pause = 500;
     link(true);
-    if (handlers[name]) handlers[name](event.data ? JSON.parse(event.data) : null);
-  };
-  const close = () => {
-    clearTimeout(again);
-    if (source) source.close();
-    source = null;
-  };
-  const open = () => {
-    close();
-    if (document.hidden) return;
-    source = new EventSource('/api/events' + (live ? '?live' : ''));
-    for (const name of ['hello', 'beat', 'state', 'progress', 'history', 'samples', 'status', 'alarms',
-                        'dropped', 'capture']) {
-      source.addEventListener(name, take(name));
-    }
-    source.onerror = () => {
-      close();
-      again = setTimeout(open, pause);
-      pause = Math.min(2 * pause, 10000);
-    };
-  };
+    if (handlers[name]) handlers[name](data ? JSON.parse(data) : null);
+  });
   const watch = setInterval(() => {
-    if (document.hidden || Date.now() - heard <= SILENT_MS) return;
-    link(false);
-    // A stalled connection gives no error: begin again.
-    if (source && Date.now() - heard > 3 * SILENT_MS) {
-      close();
-      again = setTimeout(open, pause);
-    }
+    if (!document.hidden && Date.now() - heard > SILENT_MS) link(false);
   }, 250);
-  const seen = () => (document.hidden ? close() : open());
-  document.addEventListener('visibilitychange', seen);
-  open();
+  const tell = () => {
+    heard = Date.now();
+    stream.postMessage({seen: !document.hidden, live});
+  };
+  const leave = () => stream.postMessage(null);
+  document.addEventListener('visibilitychange', tell);
+  addEventListener('pagehide', leave);
+  addEventListener('pageshow', tell);
+  tell();
   return () => {
     clearInterval(watch);
-    document.removeEventListener('visibilitychange', seen);
-    close();
+    document.removeEventListener('visibilitychange', tell);
+    removeEventListener('pagehide', leave);
+    removeEventListener('pageshow', tell);
+    leave();
   };
 }

@@ -2,6 +2,7 @@
 import {html, useEffect, useRef, useState} from '/preact.js';
 import {Ladder} from '/ladder.js';
 import {Laws} from '/laws.js';
+import {MakeModel} from '/make.js';
 import {PlotStack} from '/plots.js';
 import {Result} from '/result.js';
 import {latest, post, upload} from '/server.js';
@@ -15,7 +16,7 @@ const SPECS = [
   {height: 220, label: 'error', level: 'floor', series: [
     {key: 'ghost_error', name: 'before', tone: 'ghost'},
     {key: 'error', name: 'measured less model, drift-corrected', tone: 'residual'}]},
-  {height: 130, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
+  {height: 150, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
 ];
 
 function Files({state, act}) {
@@ -56,10 +57,11 @@ function Files({state, act}) {
         <span class="hint">CSV, MAT, LCM log, TOML; or drop it here</span></p>
       <input id="upload" type="file" multiple hidden ref=${input}
              onChange=${(e) => { take(e.target.files); }} />
+      <${MakeModel} act=${act} />
     </section>`;
 }
 
-function Verdict({shown, trial, act, selected, select}) {
+function Verdict({shown, trial, running, act, selected, select}) {
   if (!shown) return null;
   return html`
     <section class=${'verdict ' + shown.judgement}>
@@ -74,6 +76,9 @@ function Verdict({shown, trial, act, selected, select}) {
           <button aria-pressed=${i === selected} onClick=${() => select(i)}
                   title=${region.share + ' of the speed error in ' + region.time_share + ' of the time'}>
             ${region.where} <small>${region.share}</small></button>`)}</p>`}
+      ${!trial && html`<p class="row">
+        <button class="main" disabled=${running} onClick=${() => act(() => post('diagnose'))}>
+          Diagnose: what is missing?</button></p>`}
       <details><summary>In words</summary>
         ${[...shown.lines, ...shown.notes].map((line) => html`<p>${line}</p>`)}</details>
     </section>`;
@@ -143,6 +148,13 @@ function usePlots({state, values, rms}) {
   }));
 
   const zoom = (from, to) => {
+    const {shown} = now.current.state;
+    if (from !== null && shown) {
+      const span = to - from;  // moved into the record as a whole
+      if (span >= shown.to_s - shown.from_s) from = null;
+      else if (from < shown.from_s) [from, to] = [shown.from_s, shown.from_s + span];
+      else if (to > shown.to_s) [from, to] = [shown.to_s - span, shown.to_s];
+    }
     view.current = from === null ? {from: 0, to: 0} : {from, to};
     setZoomed(from !== null);
     draw.current();
@@ -179,8 +191,10 @@ function usePlots({state, values, rms}) {
         <button onClick=${() => zoom(null, null)} disabled=${!zoomed}>Whole record</button>
         <button aria-pressed=${marking} onClick=${() => setMarking(!marking)} disabled=${!shown}>
           Leave out a stretch</button>
+        ${zoomed && html`<button onClick=${() => leaveOut(view.current.from, view.current.to)}>
+          Leave out what is shown</button>`}
         <span class="hint">${marking ? 'drag over the stretch that must not count'
-                                     : 'drag to zoom, double click for the whole record'}</span>
+                                     : 'drag to zoom, double click for the whole record; keys: arrows + − 0'}</span>
       </p>
       <div class="stack" ref=${element}></div>
     </section>`};
@@ -192,7 +206,7 @@ function Progress({progress, running, cancel}) {
   return html`
     <section class="progress" role="status">
       <progress max=${of || 1} ...${of ? {value: done} : {}}></progress>
-      <p>${text}</p><button onClick=${cancel}>Cancel</button>
+      <p class="row"><button onClick=${cancel}>Cancel</button> <span>${text}</span></p>
     </section>`;
 }
 
@@ -226,7 +240,7 @@ function AddEffect({effects, act, disabled}) {
   const absent = effects.filter((e) => !e.present);
   if (absent.length === 0) return null;
   return html`
-    <label>Add an effect by hand
+    <label>Add an effect
       <select id="effect" disabled=${disabled} value="" onChange=${(e) => {
           const effect = e.target.value;
           e.target.value = '';
@@ -271,26 +285,24 @@ export function Workbench({state, progress}) {
           <button class="plain" aria-label="close" onClick=${() => say('')}>×</button></p>`}
         ${!state.shown && html`<p class="welcome">Choose a record and a model: the page shows where the
           model fails, and finds out what it misses.</p>`}
-        <${Verdict} shown=${state.shown} trial=${state.trial} act=${act}
+        <${Verdict} shown=${state.shown} trial=${state.trial} running=${state.running} act=${act}
                     selected=${plots.selected} select=${plots.select} />
+        <${Progress} progress=${progress} running=${state.running} cancel=${() => run('cancel')} />
         <${SideBySide} beside=${state.beside} />
         <${Bands} ignored=${state.ignored} act=${act} />
         ${plots.view}
         <${Laws} state=${state} />
       </div>
       <div class="right">
-        <section class="next">
-          <h2>What is missing?</h2>
-          <p class="row"><button class="main" disabled=${!state.shown || state.running}
-             onClick=${() => run('diagnose')}>Diagnose</button>
-            <button disabled=${state.running || !state.model} onClick=${() => run('undo')}>
-              ${state.trial ? 'Undo the trial' : 'Back one model'}</button></p>
-          <${AddEffect} effects=${state.effects} act=${act} disabled=${state.running} />
-        </section>
-        <${Progress} progress=${progress} running=${state.running} cancel=${() => run('cancel')} />
         <${Result} result=${state.result} run=${run} running=${state.running} />
         <${Ladder} state=${state} open=${(name) => run('model', {name})}
                    beside=${(name) => run('beside', {name})} />
+        ${state.model && html`<section class="next">
+          <h2>Step by hand</h2>
+          <${AddEffect} effects=${state.effects} act=${act} disabled=${state.running} />
+          <p class="row"><button disabled=${state.running} onClick=${() => run('undo')}>
+            ${state.trial ? 'Undo the trial' : 'Back one model'}</button></p>
+        </section>`}
         <${Commands} commands=${state.commands} shown=${state.shown}
                      preview=${preview && preview.command} />
         <${Exports} state=${state} act=${act} say=${say} />
