@@ -120,13 +120,22 @@ void OnlineResidual::find_worst(ResidualFigures& f) const {
   try {
     const validation::Comparison c =
         validation::compare(model_, greybox::dataset_of(record), observer_per_s_);
-    if (!c.headline.significant || c.headline.ranges.empty()) return;
-    const validation::RegionRange& range = c.headline.ranges.front();
-    f.worst = present::where(c.headline);
+    // Regions stand out in what a gain and an offset do not explain; where these are all that is
+    // wrong, since a fault say, the healthy part stands out, and is not the worst.
+    constexpr double kLeastShare = 0.5;
+    std::vector<validation::SignificantRegion> regions = c.worst;
+    regions.insert(regions.begin(), c.headline);
+    const auto worst = std::find_if(regions.begin(), regions.end(), [&](const auto& region) {
+      return region.significant && !region.ranges.empty() &&
+             region.figures.rms_m >= kLeastShare * c.rms_m;
+    });
+    if (worst == regions.end()) return;
+    const validation::RegionRange& range = worst->ranges.front();
+    f.worst = present::where(*worst);
     f.worst_variable = range.variable;
     f.worst_from = range.from;
     f.worst_to = range.to;
-    f.worst_rms_m = c.headline.figures.rms_m;
+    f.worst_rms_m = worst->figures.rms_m;
   } catch (const config::schema::Error& e) {
     f.note = e.what();
   }

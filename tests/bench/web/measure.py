@@ -1,8 +1,12 @@
 #!/usr/bin/env python3
 """The page of `spoolwatch serve` in a real headless Chromium: slider to curve, first picture, zoom of a
-ten-minute record, the live page's load and memory, many pages, and a client that stops reading.
+ten-minute record, the live page's load, many windows, a client that stops reading, the loop's lateness
+with and without all that, and the page's memory over eight hours of samples.
 
-  measure.py --bin DIR [--seconds S] [workbench|live]...
+  measure.py --bin DIR [--seconds S] [--soak-minutes M] [workbench|live|lateness|soak]...
+
+soak: what eight hours of a stand send, in ten minutes (48 times as fast); --soak-minutes: a stand in
+real time instead.
 
 Prints one line per figure with its bar; the exit code is 1 where a bar is missed.
 """
@@ -21,6 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tests/workbench/serve"))
 from chromium import Browser  # noqa: E402
+from health import Health  # noqa: E402
 from server_process import Server  # noqa: E402
 
 SLIDE = """(async () => {
@@ -68,8 +73,58 @@ def processes_cpu_s(leader):
 
 
 def heap_MB(page):
-    page.call("HeapProfiler.collectGarbage")
-    return page.run("performance.memory.usedJSHeapSize") / 1e6
+    """Of the page and of the worker that holds the event stream, after a collection."""
+    browser, total = page.browser, 0
+    sessions = [page.session]
+    for target in browser.call("Target.getTargets")["targetInfos"]:
+        if target["type"] == "shared_worker":
+            sessions.append(browser.call("Target.attachToTarget", targetId=target["targetId"],
+                                         flatten=True)["sessionId"])
+    for session in sessions:
+        browser.call("HeapProfiler.collectGarbage", session)
+        total += browser.call("Runtime.getHeapUsage", session)["usedSize"]
+    for session in sessions[1:]:
+        browser.call("Target.detachFromTarget", sessionId=session)
+    return total / 1e6
+
+
+class Daemon:
+    """A stand in real time; its messages over LCM."""
+
+    def __init__(self, args, folder):
+        self.url = f"udpm://239.255.76.67:{20000 + os.getpid() % 10000}?ttl=0"
+        self.control = folder / "control.sock"
+        self.process = subprocess.Popen(
+            [args.bin / "spoolwatchd", "--config", ROOT / "config/demo.toml", "--lcm-url", self.url,
+             "--set", f"control.socket={self.control}", "--set", "loop.privileges=try"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+
+def live_page(browser, server, window=False):
+    page = browser.page(server.url.split("#")[0] + "#live" if server.cookie else server.url, window=window)
+    page.wait("document.body.dataset.ready === 'yes'")
+    if not server.cookie:
+        server.log_in()
+        server.post("shipped", name="thesis_calibrated.toml")
+        page.run("document.querySelector('a[href=\"#live\"]').click()")
+    return page
+
+
+def stall(server):
+    """A client that opens its stream and never reads."""
+    stalled = socket.socket()
+    stalled.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    stalled.connect(("127.0.0.1", server.port))
+    stalled.sendall(f"GET /api/events?live HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+                    f"Cookie: {server.cookie}\r\n\r\n".encode())
+    return stalled
 
 
 def workbench(args, folder, figures):
@@ -109,73 +164,137 @@ def workbench(args, folder, figures):
 
 
 def live(args, folder, figures):
-    url = f"udpm://239.255.76.67:{20000 + os.getpid() % 10000}?ttl=0"
-    control = folder / "control.sock"
-    daemon = subprocess.Popen(
-        [args.bin / "spoolwatchd", "--config", ROOT / "config/demo.toml", "--lcm-url", url,
-         "--set", f"control.socket={control}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        with Server(str(args.bin / "spoolwatch"), folder / "live", "--lcm-url", url, "--control",
-                    str(control)) as server, Browser() as browser:
-            page = browser.page(server.url)
-            page.wait("document.body.dataset.ready === 'yes'")
-            page.choose("#model", "shipped:thesis_calibrated.toml")
-            page.wait("document.querySelector('#model').value === 'thesis_calibrated.toml'")
-            page.run("document.querySelector('a[href=\"#live\"]').click()")
-            page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 1500")
-            page.call("HeapProfiler.enable")
-            leader = browser.process.pid
+    with Daemon(args, folder) as daemon, \
+            Server(str(args.bin / "spoolwatch"), folder / "live", "--lcm-url", daemon.url, "--control",
+                   str(daemon.control)) as server, Browser() as browser:
+        page = live_page(browser, server)
+        page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 1500")
+        leader = browser.process.pid
+
+        def load(what, bar_browser, bar_server):
             before, server_before, began = processes_cpu_s(leader), server.cpu_s(), time.monotonic()
             time.sleep(args.seconds)
             span = time.monotonic() - began
-            figures.say("live page, all processes of the browser", 100 * (processes_cpu_s(leader) - before) / span,
-                        "%", 15.0)
-            figures.say("live page, server", 100 * (server.cpu_s() - server_before) / span, "%", 3.0)
-            heaps = []
-            for _ in range(3):
-                heaps.append(heap_MB(page))
-                time.sleep(args.seconds / 4)
-            print(f"{'heap of the live page':58} {heaps[-1]:9.2f} MB")
+            figures.say(f"{what}, all processes of the browser", 100 * (processes_cpu_s(leader) - before) / span,
+                        "%", bar_browser)
+            figures.say(f"{what}, server", 100 * (server.cpu_s() - server_before) / span, "%", bar_server)
 
-            # A client that opens its stream and never reads.
-            server.log_in()
-            resident = server.resident_kB()
-            stalled = socket.create_connection(("127.0.0.1", server.port))
-            stalled.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            stalled.sendall(f"GET /api/events?live HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
-                            f"Cookie: {server.cookie}\r\n\r\n".encode())
-            times = []
-            for _ in range(int(20 * args.seconds / 2)):
-                began = time.monotonic()
-                server.state()
-                times.append(1e3 * (time.monotonic() - began))
-                time.sleep(0.05)
-            figures.say("other requests beside a stalled client, p95", p95(times), "ms", 100.0)
-            figures.say("growth of the server by a stalled client", (server.resident_kB() - resident) / 1024, "MB", 8.0)
-            stalled.close()
+        load("live page", 15.0, 3.0)
 
-            for _ in range(7):
-                browser.page(server.url.split("#")[0])
-            time.sleep(2)
+        resident = server.resident_kB()
+        stalled = stall(server)
+        times = []
+        for _ in range(int(20 * args.seconds / 2)):
             began = time.monotonic()
-            last = browser.page(server.url.split("#")[0] + "#live")
-            last.wait("document.body.dataset.ready === 'yes'")
-            figures.say("ninth page answers after", time.monotonic() - began, "s", 2.0)
+            server.state()
+            times.append(1e3 * (time.monotonic() - began))
+            time.sleep(0.05)
+        figures.say("other requests beside a stalled client, p95", p95(times), "ms", 100.0)
+        figures.say("growth of the server by a stalled client", (server.resident_kB() - resident) / 1024, "MB", 8.0)
+        stalled.close()
+
+        # A browser opens six connections to a server; all windows are seen.
+        pages, slowest = [page], 0
+        for _ in range(7):
+            began = time.monotonic()
+            pages.append(live_page(browser, server, window=True))
+            slowest = max(slowest, time.monotonic() - began)
+        figures.say("slowest of eight windows to open", slowest, "s", 2.0)
+        time.sleep(3)
+        ages = [one.run("document.querySelector('.age').textContent") for one in pages]
+        behind = [float(age.split()[2]) if age.startswith("newest") else math.inf for age in ages]
+        figures.say("oldest newest sample of eight windows", max(behind), "s", 1.0)
+        load("eight windows at once", 8 * 15.0, 3.0)
+
+
+def lateness(args, folder, figures):
+    """p99.9 of the loop's wake-ups, by turns without the page and with two windows and a stalled client."""
+    found = {"without the page": [], "with two windows and a stalled client": []}
+    for turn in range(3):
+        for name, values in found.items():
+            place = folder / f"lateness-{turn}-{len(values)}-{name.split()[0]}"
+            place.mkdir()
+            with Daemon(args, place) as daemon, Health(str(args.bin / "spoolwatch"), daemon.url) as health:
+                health.next()
+                if name == "without the page":
+                    time.sleep(args.seconds)
+                else:
+                    with Server(str(args.bin / "spoolwatch"), place / "session", "--lcm-url", daemon.url,
+                                "--control", str(daemon.control)) as server, Browser() as browser:
+                        live_page(browser, server)
+                        live_page(browser, server, window=True)
+                        stalled = stall(server)
+                        time.sleep(args.seconds)
+                        values.append(health.next())
+                        stalled.close()
+                        continue
+                values.append(health.next())
+    for name, values in found.items():
+        late = sorted(one["lateness_p999_us"] for one in values)
+        print(f"{'lateness p99.9 ' + name:58} {late[1]:9.0f} us   ({late[0]:.0f} to {late[2]:.0f}), "
+              f"{sum(one['skipped_periods'] for one in values)} periods skipped")
+
+
+def recorded(args, folder, hours):
+    """An LCM log of a stand in virtual time, and how much faster than it was written it must be played."""
+    log = folder / "soak.lcm"
+    began = time.monotonic()
+    subprocess.run([args.bin / "spoolwatchd", "--config", ROOT / "config/demo.toml", "--clock", "virtual",
+                    "--duration", str(3600 * hours), "--lcm-url", f"file://{log}?mode=w", "--set",
+                    f"control.socket={folder}/soak.sock"], check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)
+    return log, time.monotonic() - began
+
+
+def soak(args, folder, figures):
+    hours, minutes = 8, 10
+    real = args.soak_minutes > 0
+    if real:
+        source, url, control = Daemon(args, folder), None, None
+        url, control, minutes = source.url, source.control, args.soak_minutes
+        first_s = 600 if minutes > 20 else 60 * minutes / 2
+    else:
+        log, written_s = recorded(args, folder, hours)
+        url, control = f"file://{log}?mode=r&speed={written_s / (60 * minutes):.5f}", folder / "none.sock"
+        first_s = 600 * minutes * 60 / (3600 * hours)  # ten minutes of the stand
+    try:
+        with Server(str(args.bin / "spoolwatch"), folder / "soak", "--lcm-url", url, "--control",
+                    str(control)) as server, Browser() as browser:
+            page = live_page(browser, server)
+            page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 500")
+            began = time.monotonic()
+            heaps = []
+            for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+                at = began + first_s + share * (60 * minutes - first_s)
+                while time.monotonic() < at:
+                    time.sleep(min(5, at - time.monotonic() + 0.01))
+                    page.browser.events.clear()
+                heaps.append(heap_MB(page))
+                print(f"{'heap of page and worker':58} {heaps[-1]:9.2f} MB   after "
+                      f"{(time.monotonic() - began) / 60:.1f} min; server {server.resident_kB() / 1024:.1f} MB, page "
+                      f"'{page.run('document.querySelector(`.age`).textContent')}'", flush=True)
+            words = f"{minutes:g} min" if real else f"{hours} h of samples in {minutes} min"
+            figures.say(f"heap at the end of {words} beside that after 10 min", 100 * (heaps[-1] / heaps[0] - 1),
+                        "%", 10.0)
     finally:
-        daemon.kill()
-        daemon.wait()
+        if real:
+            source.__exit__()
+
+
+PARTS = {"workbench": workbench, "live": live, "lateness": lateness, "soak": soak}
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
     parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("parts", nargs="*", choices=["workbench", "live", []], default=["workbench", "live"])
+    parser.add_argument("--soak-minutes", type=float, default=0.0)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], default=["workbench", "live", "lateness"])
     args = parser.parse_args()
     figures = Figures()
     with tempfile.TemporaryDirectory() as folder:
         for part in args.parts:
-            {"workbench": workbench, "live": live}[part](args, pathlib.Path(folder), figures)
+            PARTS[part](args, pathlib.Path(folder), figures)
     return 1 if figures.missed else 0
 
 

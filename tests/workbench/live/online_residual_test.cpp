@@ -75,6 +75,25 @@ TEST(OnlineResidual, SettlesAnewBehindAGap) {
   EXPECT_NEAR(running.figures().rms_m, 0.0, 1e-6) << "the jump counts for no error";
 }
 
+TEST(OnlineResidual, TheHealthyTimeBeforeAFaultIsNotTheWorst) {
+  const program::Folder folder;
+  const std::string log = live_test::make_log(folder.path() / "log", "20");
+  const auto record = config::record::read_record(log);
+  live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  // From 6 s on the rod moves 12 % further.
+  const std::size_t fault = static_cast<std::size_t>(std::lround(6.0 / record.sample_time_s));
+  double y_m = record.y_m.front();
+  for (std::size_t k = 1; k < record.size(); ++k) {
+    y_m += (k < fault ? 1.0 : 1.12) * (record.y_m[k] - record.y_m[k - 1]);
+    running.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
+                record.u_V[k], y_m);
+  }
+  const live::ResidualFigures figures = running.figures();
+  EXPECT_GT(figures.rms_m, 1e-4);
+  EXPECT_TRUE(figures.worst.empty() || figures.worst_rms_m > 0.5 * figures.rms_m)
+      << figures.worst << ": " << figures.worst_rms_m;
+}
+
 TEST(OnlineResidual, SaysWhenTheRodDoesNotMove) {
   live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 1000; ++tick) running.add(tick, 0.005, 0.0, 0.3);

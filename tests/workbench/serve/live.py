@@ -64,6 +64,7 @@ def watch(args, folder):
             page.wait("document.querySelector('.alarms li.MAJOR')", 60)
             if args.pictures:
                 page.picture(args.pictures / "live.png")
+            page.choose(".tools select", "5")
             page.choose("#trigger-mode", "single")
             page.choose("#trigger-window_s", "10")
             page.choose("#trigger-before_ratio", "0")
