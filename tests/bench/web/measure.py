@@ -73,7 +73,7 @@ def processes_cpu_s(leader):
 
 
 def heap_MB(page):
-    """Of the page and of the worker that holds the event stream, after a collection."""
+    """Of the page and of the worker that holds the event stream, after a collection, with typed arrays."""
     browser, total = page.browser, 0
     sessions = [page.session]
     for target in browser.call("Target.getTargets")["targetInfos"]:
@@ -82,7 +82,8 @@ def heap_MB(page):
                                          flatten=True)["sessionId"])
     for session in sessions:
         browser.call("HeapProfiler.collectGarbage", session)
-        total += browser.call("Runtime.getHeapUsage", session)["usedSize"]
+        usage = browser.call("Runtime.getHeapUsage", session)
+        total += usage["usedSize"] + usage.get("backingStorageSize", 0)
     for session in sessions[1:]:
         browser.call("Target.detachFromTarget", sessionId=session)
     return total / 1e6

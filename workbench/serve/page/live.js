@@ -191,16 +191,16 @@ export function Live({feed, link, state, openWorkbench}) {
       }
       stack.bands = [];
       stack.mark = null;
-      const t = k.ring.t;
-      if (paused && !k.frozen && t.length) k.frozen = t[t.length - 1];
+      const {ring} = k;
+      if (paused && !k.frozen && ring.length) k.frozen = ring.newest;
       if (!paused) { k.frozen = null; k.after = 0; }
       if (paused && key === k.key) return;
       k.key = key;
       k.fresh = false;
-      if (!t.length) return;
-      const newest = k.frozen || t[t.length - 1];
+      if (!ring.length) return;
+      const newest = k.frozen || ring.newest;
       const [from, to] = view || [newest - span, newest];
-      const part = k.ring.part(from, to);
+      const part = ring.part(from, to);
       k.base = newest;
       stack.show({...part, t: part.t.map((v) => v - newest)}, from - newest, to - newest);
       element.current.dataset.points = part.t.length;

@@ -5,14 +5,17 @@ export const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;
 const SAME_S = 1e-4;  // times of two batches differ by their rounding
 
-/// Samples of the last KEPT_S seconds, oldest first.
+/// Samples of the last KEPT_S seconds, oldest first, in arrays that are as large as the rate needs and
+/// then stay: a missing value is NaN in them, and null in what part() returns.
 export class Ring {
-  constructor() { this.clear(); }
-  clear() {
-    this.t = [];
-    for (const key of KEYS) this[key] = [];
+  constructor() {
+    this.kept = Object.fromEntries(['t', ...KEYS].map((key) => [key, new Float64Array(4096)]));
+    this.clear();
   }
-  get newest() { return this.t.length ? this.t[this.t.length - 1] : -Infinity; }
+  clear() { this.begin = this.end = 0; }
+  get length() { return this.end - this.begin; }
+  get newest() { return this.length ? this.kept.t[this.end - 1] : -Infinity; }
+  get oldest() { return this.length ? this.kept.t[this.begin] : Infinity; }
 
   /// A batch that came as it was measured. False where the clock went back: what came before is gone.
   samples(batch) {
@@ -25,42 +28,53 @@ export class Ring {
   history(batch) {
     const goes_on = !batch.begins || batch.newest > this.newest - SAME_S;
     if (!goes_on) this.clear();
-    if (batch.begins && batch.t.length && this.t.length && batch.t0 + batch.t[0] > this.newest) this.gap();
+    if (batch.begins && batch.t.length && this.length && batch.t0 + batch.t[0] > this.newest) this.gap();
     const newest = this.newest;
     const from = batch.t.findIndex((t) => batch.t0 + t > newest);
     if (from >= 0) this.add(batch, from);
     return goes_on;
   }
   add(batch, from) {
-    for (let i = from; i < batch.t.length; ++i) {
-      this.t.push(batch.t0 + batch.t[i]);
-      for (const key of KEYS) this[key].push(batch[key][i]);
+    for (let i = from; i < batch.t.length; ++i) this.push(batch.t0 + batch.t[i], (key) => batch[key][i]);
+  }
+  push(t, value) {
+    if (this.end === this.kept.t.length) this.make_room();
+    this.kept.t[this.end] = t;
+    for (const key of KEYS) this.kept[key][this.end] = value(key) ?? NaN;
+    ++this.end;
+  }
+  /// Moves what is kept to the front of the arrays, of larger ones where it fills most of them.
+  make_room() {
+    this.begin = this.first(this.newest - KEPT_S);
+    const {begin, end, length} = this, larger = length > 0.7 * end;
+    for (const [key, old] of Object.entries(this.kept)) {
+      if (larger) {
+        this.kept[key] = new Float64Array(2 * old.length);
+        this.kept[key].set(old.subarray(begin, end));
+      } else {
+        old.copyWithin(0, begin, end);
+      }
     }
-    // Cut rarely: moving the arrays costs.
-    if (this.t.length && this.newest - this.t[0] > 1.25 * KEPT_S) {
-      const cut = this.first(this.newest - KEPT_S);
-      for (const key of ['t', ...KEYS]) this[key] = this[key].slice(cut);
-    }
+    this.begin = 0;
+    this.end = length;
   }
   /// A missing sample: the curves have a gap here.
   gap() {
-    if (!this.t.length) return;
-    this.t.push(this.newest + 1e-6);
-    for (const key of KEYS) this[key].push(null);
+    if (this.length) this.push(this.newest + 1e-6, () => NaN);
   }
-  /// The first sample not before `t`.
+  /// Place in the arrays of the first sample not before `t`.
   first(t) {
-    let low = 0, high = this.t.length;
+    let low = this.begin, high = this.end;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (this.t[middle] < t) low = middle + 1; else high = middle;
+      if (this.kept.t[middle] < t) low = middle + 1; else high = middle;
     }
     return low;
   }
+  /// Those from one to the other, and one more to either side, so that lines reach the edges.
   part(from, to) {
-    const a = Math.max(0, this.first(from) - 1), b = this.first(to) + 1;
-    const out = {t: this.t.slice(a, b)};
-    for (const key of KEYS) out[key] = this[key].slice(a, b);
-    return out;
+    const a = Math.max(this.begin, this.first(from) - 1), b = Math.min(this.end, this.first(to) + 1);
+    return Object.fromEntries(Object.entries(this.kept).map(([key, values]) =>
+      [key, Array.from(values.subarray(a, b), (v) => (Number.isNaN(v) ? null : v))]));
   }
 }
