@@ -135,7 +135,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=3.0)
     args = parser.parse_args()
     url = f"udpm://239.255.76.67:{20000 + os.getpid() % 10000}?ttl=0"
-    with Daemon(args.programs, args.config / "demo.toml", ["loop.privileges=try"], lcm_url=url) as daemon, \
+    with Daemon(args.programs, args.config / "demo.toml", ["loop.overrun_action=count"], lcm_url=url) as daemon, \
             Health(str(args.programs / "spoolwatch"), url) as health, tempfile.TemporaryDirectory() as place:
         for name, trouble in TROUBLES.items():
             folder = pathlib.Path(place) / name.replace(" ", "-")

@@ -37,6 +37,8 @@ constexpr std::chrono::milliseconds kBatch{100};
 constexpr std::chrono::seconds kStatus{1};
 constexpr std::chrono::seconds kFigures{3};  ///< a comparison over the last half minute
 constexpr std::chrono::seconds kRetry{1};
+/// A page that loads itself again finds the last minute, and a trigger as it was.
+constexpr std::chrono::seconds kLinger{15};
 constexpr double kHistory_s = 60.0;
 /// The longest capture at 10 kHz; 3 kHz for the whole history.
 constexpr std::size_t kMostPoints = 200'000;
@@ -354,9 +356,12 @@ void LiveChannel::listen() {
   std::uint64_t triggers_set = 0;
   Clock::time_point told{};
   Clock::time_point compared{};
+  Clock::time_point watched = Clock::now();
   while (true) {
     const Wish now = wish();
-    if (now.ends || now.pages.empty()) return;
+    if (now.ends) return;
+    if (!now.pages.empty()) watched = Clock::now();
+    if (Clock::now() - watched > kLinger) return;
     if (now.model != model) {
       model = now.model;
       listener.watch(model);
@@ -376,7 +381,7 @@ void LiveChannel::listen() {
       show_capture(number(made), {now.pages.begin(), now.pages.end()});
       told = {};
     }
-    if (Clock::now() - told >= kStatus) {
+    if (!now.pages.empty() && Clock::now() - told >= kStatus) {
       told = Clock::now();
       if (told - compared >= kFigures) {
         compared = told;

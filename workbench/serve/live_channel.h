@@ -1,5 +1,6 @@
 // A live channel passes the daemon's messages on to pages that watch: samples in batches,
-// estimates, health, and the error of a model beside them. It listens only while a page watches.
+// estimates, health, and the error of a model beside them. It listens while a page watches, and for
+// some seconds more.
 //
 // A page that begins to watch catches up with the last minute in batches of bounded size, apart
 // from the other pages: "history" until it has all, then "samples".

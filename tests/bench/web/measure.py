@@ -97,7 +97,7 @@ class Daemon:
         self.control = folder / "control.sock"
         self.process = subprocess.Popen(
             [args.bin / "spoolwatchd", "--config", ROOT / "config/demo.toml", "--lcm-url", self.url,
-             "--set", f"control.socket={self.control}", "--set", "loop.privileges=try"],
+             "--set", f"control.socket={self.control}", "--set", "loop.overrun_action=count"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def __enter__(self):

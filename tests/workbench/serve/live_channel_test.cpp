@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "config/record/record.h"
 #include "spoolwatch/sample_t.hpp"
@@ -175,9 +176,15 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   (void)inboxes.when_it_has(1, 60 * kRate_Hz);
   channel.open(2);  // is shown the newest capture too
   (void)inboxes.when_it_has(2, 59 * kRate_Hz);
+  // A page that loads itself again begins nothing again.
+  channel.close(1);
+  channel.close(2);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  channel.open(3);
+  (void)inboxes.when_it_has(3, 59 * kRate_Hz);
   const auto capture = channel.newest_capture();
   ASSERT_NE(capture, nullptr);
-  EXPECT_EQ(inboxes.captures, 2);
+  EXPECT_EQ(inboxes.captures, 3) << "shown to each page";
   EXPECT_EQ(capture->number, 1U);
   EXPECT_NEAR(capture->span.at_s - kBegin_s, 30.0005, 1e-5);
   const ordered_json drawn = ordered_json::parse(to_json(*capture));
