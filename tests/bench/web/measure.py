@@ -130,8 +130,9 @@ def stall(server):
 
 def workbench(args, folder, figures):
     with Server(str(args.bin / "spoolwatch"), folder / "workbench") as server, Browser() as browser:
+        page = browser.page()
         began = time.monotonic()
-        page = browser.page(server.url)
+        page.call("Page.navigate", url=server.url)
         page.wait("document.body.dataset.ready === 'yes'")
         figures.say("first picture after the page is opened", time.monotonic() - began, "s", 1.0)
         page.drop_files("#upload", [ROOT / "config/tour/multisine.csv"])
@@ -205,7 +206,7 @@ def live(args, folder, figures):
         ages = [one.run("document.querySelector('.age').textContent") for one in pages]
         behind = [float(age.split()[2]) if age.startswith("newest") else math.inf for age in ages]
         figures.say("oldest newest sample of eight windows", max(behind), "s", 1.0)
-        load("eight windows at once", 8 * 15.0, 3.0)
+        load("eight windows at once", 8 * 15.0, 8 * 3.0)
 
 
 def lateness(args, folder, figures):
