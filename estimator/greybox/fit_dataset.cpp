@@ -1,6 +1,9 @@
 #include "estimator/greybox/fit_dataset.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "config/schema/error.h"
@@ -11,10 +14,44 @@ namespace estimator::greybox {
 namespace {
 
 constexpr double kFewestBlocks = 4.0;
+/// A block that begins anew and is shorter hardly outlives its settling.
+constexpr double kShortestBlock_s = 2.0;
 
 bool in_fitted_block(const Dataset& record, std::size_t i) {
   const double since_s = record.t_s[i] - record.t_s.front();
   return static_cast<long>(since_s / block_s(record)) % 2 == 0;
+}
+
+/// First sample of each block of the stated length; a last one below kShortestBlock_s belongs to
+/// the one before.
+std::vector<std::size_t> block_starts(const Dataset& record, double length_s) {
+  std::vector<std::size_t> starts{0};
+  // a time that is rounded below a block's start belongs to that block
+  const double early_s = 0.5 * record.sample_time_s;
+  double next = 1.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double blocks = (record.t_s[i] - record.t_s.front() + early_s) / length_s;
+    if (blocks < next) continue;
+    if (record.t_s.back() - record.t_s[i] + record.sample_time_s < kShortestBlock_s) break;
+    starts.push_back(i);
+    next = std::floor(blocks) + 1.0;
+  }
+  if (starts.size() > 1) return starts;
+  throw config::schema::bad_data(record.name, fmt::format("has one block of {:g} s", length_s),
+                                 "--fit blocks:SECONDS of half its length or less");
+}
+
+FitDataset fit_stated_blocks(const std::vector<Dataset>& records, double length_s) {
+  std::vector<Dataset> fitted;
+  std::vector<Dataset> scored;
+  for (const Dataset& record : records) {
+    std::vector<std::size_t> bounds = block_starts(record, length_s);
+    bounds.push_back(record.size());
+    for (std::size_t b = 0; b + 1 < bounds.size(); ++b) {
+      (b % 2 == 0 ? fitted : scored).push_back(part(record, bounds[b], bounds[b + 1]));
+    }
+  }
+  return fit_dataset(std::move(fitted), std::move(scored));
 }
 
 }  // namespace
@@ -28,19 +65,29 @@ Split parse_split(std::string_view text) {
   if (text == "blocks") return Split::blocks;
   if (text == "first-half") return Split::first_half;
   if (text == "second-half") return Split::second_half;
-  throw config::schema::UsageError("--fit: is " + std::string(text) +
-                                   "; allowed: blocks, first-half, second-half");
+  constexpr std::string_view kStated = "blocks:";
+  if (text.starts_with(kStated)) {
+    const char* const end = text.data() + text.size();
+    double length_s = 0.0;
+    const auto [rest, error] = std::from_chars(text.data() + kStated.size(), end, length_s);
+    if (error == std::errc() && rest == end && length_s >= kShortestBlock_s &&
+        std::isfinite(length_s)) {
+      return {Split::blocks, length_s};
+    }
+  }
+  throw config::schema::UsageError("--fit: is " + std::string(text) + "; allowed: " + kSplits);
 }
 
 FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts, Split split) {
-  if (holdouts.empty() && split != Split::blocks) {
+  if (holdouts.empty() && split.block_s > 0.0) return fit_stated_blocks(records, split.block_s);
+  if (holdouts.empty() && split.kind != Split::blocks) {
     std::vector<Dataset> first;
     std::vector<Dataset> second;
     for (const Dataset& record : records) {
       first.push_back(part(record, 0, record.size() / 2));
       second.push_back(part(record, record.size() / 2, record.size()));
     }
-    if (split == Split::second_half) first.swap(second);
+    if (split.kind == Split::second_half) first.swap(second);
     return fit_dataset(std::move(first), std::move(second));
   }
   FitDataset result;

@@ -10,8 +10,20 @@
 namespace estimator::greybox {
 
 /// Training samples where no record is held out; the others validate.
-enum class Split { blocks, first_half, second_half };
-/// "blocks", "first-half", "second-half".
+struct Split {
+  enum Kind { blocks, first_half, second_half };
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a kind is a split
+  Split(Kind of = blocks, double length_s = 0.0) : kind(of), block_s(length_s) {}
+  bool operator==(const Split&) const = default;
+
+  Kind kind;
+  /// Length of blocks that begin anew, each a record of its own; 0: blocks of kBlock_s of one run.
+  double block_s;
+};
+inline constexpr const char* kSplits =
+    "blocks, blocks:SECONDS (2 or more), first-half, second-half";
+/// One of kSplits. Throws config::schema::UsageError.
 [[nodiscard]] Split parse_split(std::string_view text);
 
 inline constexpr double kBlock_s = 2.0;  ///< longest block: every other one is fitted
@@ -46,8 +58,9 @@ struct FitDataset {
 };
 
 /// `holdouts` are records for validation only; with them every sample of `records` is fitted.
-/// Halves of records become records of their own, each with its own start. Requires at least one
-/// record.
+/// Halves of records and blocks of a stated length become records of their own, each with its own
+/// start; the first, third, ... block is fitted. Requires at least one record. Throws
+/// config::schema::DataError for a record without two blocks.
 [[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
                                      Split split = Split::blocks);
 

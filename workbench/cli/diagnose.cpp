@@ -71,11 +71,7 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   add_records(command, request->records);
   add_reading(command, request->reading);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
-  command
-      .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")
-      ->check(CLI::IsMember({"blocks", "first-half", "second-half"}))
-      ->capture_default_str()
-      ->excludes(holdout);
+  add_split(command, request->fit)->excludes(holdout);
   command.add_option("--only", request->only, "name[,name...]: try these effects alone")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -64,11 +64,7 @@ void add_fit(CLI::App& command, int& exit_code) {
   command.add_option("-o,--output", request->output, "the model file to write");
   declare_choice(command, *request);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
-  command
-      .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")
-      ->check(CLI::IsMember({"all", "blocks", "first-half", "second-half"}))
-      ->capture_default_str()
-      ->excludes(holdout);
+  add_split(command, request->fit, true)->excludes(holdout);
   command.add_option("--starts", request->starts, "number of starting points")
       ->check(number_within(1, kMostStarts))
       ->capture_default_str();

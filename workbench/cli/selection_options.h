@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "config/schema/error.h"
+#include "estimator/greybox/fit_dataset.h"
 #include "workbench/fit/parameter_selection.h"
 
 namespace workbench::cli {
@@ -27,6 +29,27 @@ inline void add_parameter_selection(CLI::App& command, fit::ParameterSelection& 
 inline void add_ignored(CLI::App& command, std::vector<std::string>& spans) {
   command.add_option("--ignore", spans, "from:to or RECORD@from:to, s: ignore these samples")
       ->allow_extra_args(false);
+}
+
+/// --fit, with "all" for commands that may fit everything.
+inline CLI::Option* add_split(CLI::App& command, std::string& fit, bool all = false) {
+  const std::string also = all ? "all" : "";
+  const auto refuse = [also](const std::string& text) {
+    try {
+      if (text.empty() || text != also) (void)estimator::greybox::parse_split(text);
+      return std::string();
+    } catch (const config::schema::UsageError&) {
+      return "is " + text + "; allowed: " + (also.empty() ? "" : also + ", ") +
+             estimator::greybox::kSplits;
+    }
+  };
+  return command
+      .add_option("--fit", fit,
+                  "part of each record that is fitted; the rest validates. blocks:40 fits every "
+                  "other 40 s, each begun anew")
+      ->check(CLI::Validator(refuse, std::string("{") + (all ? "all," : "") +
+                                         "blocks,blocks:SECONDS,first-half,second-half}"))
+      ->capture_default_str();
 }
 
 }  // namespace workbench::cli

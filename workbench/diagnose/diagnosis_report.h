@@ -23,6 +23,8 @@ struct DiagnosisReport {
   /// Free run from each segment's first sample, all samples; NaN when nothing was fitted.
   double free_run_before_m = std::numeric_limits<double>::quiet_NaN();  ///< the file as it is
   double free_run_after_m = std::numeric_limits<double>::quiet_NaN();   ///< the better model
+  /// The better model on what was not fitted, where records, halves or stated blocks are held out.
+  double free_run_heldout_m = std::numeric_limits<double>::quiet_NaN();
   /// Resonance of the measured response that the better model's lacks.
   std::optional<estimator::spectra::Resonance> resonance = {};
 

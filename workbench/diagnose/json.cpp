@@ -167,6 +167,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["rms_after_m"] = error_m(d.rms_after_m);
   json["free_run_before_m"] = number_or_null(outcome.free_run_before_m);
   json["free_run_after_m"] = number_or_null(outcome.free_run_after_m);
+  json["free_run_heldout_m"] = number_or_null(outcome.free_run_heldout_m);
   json["parameters"] = parameters_of(d);
   json["held_scale"] = held_scale_of(outcome);
   json["candidates"] = candidates_of(d.search);

@@ -59,6 +59,9 @@ void simulate_freely(DiagnosisReport& outcome) {
   outcome.free_run_before_m = greybox::rms(residual_of_file_m(problem, 0.0), problem.data.all_mask);
   const VectorXd after_m = residual_of_better_m(outcome, 0.0);
   outcome.free_run_after_m = greybox::rms(after_m, problem.data.all_mask);
+  if (problem.data.has_holdouts()) {
+    outcome.free_run_heldout_m = greybox::rms(after_m, problem.data.validation_mask);
+  }
   for (std::size_t r = 0; r < problem.data.records.size() && !outcome.resonance; ++r) {
     const greybox::Dataset& record = problem.data.records[r];
     const double* const begin = after_m.data() + problem.data.starts[r];

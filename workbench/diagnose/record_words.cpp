@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "config/units/quantity.h"
 #include "estimator/greybox/representative_segments.h"
@@ -51,11 +52,14 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
         "with --flip.",
         config::units::times_words(checks.turned_sign_ratio)));
   }
+  std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
     if (checks.turned_sign()) break;
+    if (said.contains(records[i].name)) continue;
     for (const std::string& text :
          present::response_findings(checks.responses[i], records[i].position_column)) {
       out.push_back(records[i].name + ": " + text + ".");
+      said.insert(records[i].name);
     }
   }
   const std::string size = records.empty() ? std::string() : size_words(checks, records.front());

@@ -289,8 +289,12 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back("The free run from the first sample is off by " +
                   config::units::length_words(outcome.free_run_before_m) +
                   " RMS with the model file as it is, by " +
-                  config::units::length_words(outcome.free_run_after_m) +
-                  " with the better model.");
+                  config::units::length_words(outcome.free_run_after_m) + " with the better model" +
+                  (std::isfinite(outcome.free_run_heldout_m)
+                       ? "; on what was not fitted, by " +
+                             config::units::length_words(outcome.free_run_heldout_m)
+                       : "") +
+                  ".");
   }
   if (!outcome.advice.empty()) out.push_back(outcome.advice);
   return out;
@@ -315,7 +319,12 @@ std::string split_words(const DiagnosisReport& outcome) {
     return "fitted to " + config::schema::listed(outcome.prepared->records) + ", scored on " +
            config::schema::listed(outcome.prepared->holdouts);
   }
-  switch (outcome.prepared->split) {
+  const greybox::Split split = outcome.prepared->split;
+  if (split.block_s > 0.0) {
+    return fmt::format("fitted to every other {:g} s, scored on the rest, each block begun anew",
+                       split.block_s);
+  }
+  switch (split.kind) {
     case greybox::Split::first_half:
       return "fitted to the first half, scored on the second";
     case greybox::Split::second_half:

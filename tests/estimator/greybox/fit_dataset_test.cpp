@@ -76,12 +76,12 @@ TEST(FitDataset, CutsAShortRecordIntoFourBlocks) {
 
 TEST(FitDataset, FitsOneHalfAndScoresTheOtherBegunAnew) {
   const Dataset whole = record(2001);
-  for (const Split split : {Split::first_half, Split::second_half}) {
-    const FitDataset e = fit_dataset({whole}, {}, split);
+  for (const Split::Kind half : {Split::first_half, Split::second_half}) {
+    const FitDataset e = fit_dataset({whole}, {}, half);
     ASSERT_EQ(e.records.size(), 2U);
     EXPECT_TRUE(e.has_holdouts());
-    const std::size_t fitted_from = split == Split::first_half ? 0 : 1000;
-    const std::size_t scored_from = split == Split::first_half ? 1000 : 0;
+    const std::size_t fitted_from = half == Split::first_half ? 0 : 1000;
+    const std::size_t scored_from = half == Split::first_half ? 1000 : 0;
     EXPECT_EQ(e.records[0].y_m.front(), whole.y_m[fitted_from]);
     EXPECT_EQ(e.records[1].y_m.front(), whole.y_m[scored_from]);
     const auto fitted = static_cast<Eigen::Index>(e.records[0].size());
@@ -91,6 +91,26 @@ TEST(FitDataset, FitsOneHalfAndScoresTheOtherBegunAnew) {
     EXPECT_EQ(e.all_mask.segment(fitted, 100).sum(), 0.0);
     EXPECT_EQ(e.final_weights().sum(), e.training_mask.sum());
   }
+}
+
+TEST(FitDataset, FitsEveryOtherBlockOfAStatedLengthEachBegunAnew) {
+  const Dataset whole = record(4300);  // 21.5 s: 5 + 5 + 5 + 6.5, the rest too short for a block
+  const FitDataset e = fit_dataset({whole}, {}, {Split::blocks, 5.0});
+  ASSERT_EQ(e.records.size(), 4U);
+  EXPECT_EQ(e.fitted_records, 2U);
+  const std::size_t from[] = {0, 2000, 1000, 3000};
+  const std::size_t size[] = {1000, 1000, 1000, 1300};
+  for (std::size_t r = 0; r < 4; ++r) {
+    EXPECT_EQ(e.records[r].size(), size[r]);
+    EXPECT_EQ(e.records[r].y_m.front(), whole.y_m[from[r]]);
+    EXPECT_EQ(e.records[r].t_s.front(), whole.t_s[from[r]]);
+  }
+  const auto fitted = static_cast<Eigen::Index>(e.starts[2]);
+  EXPECT_EQ(e.training_mask.tail(e.size() - fitted).sum(), 0.0);
+  EXPECT_EQ(e.validation_mask.head(fitted).sum(), 0.0);
+  EXPECT_EQ(e.training_mask.sum(), 1800.0);  // half a second of each block settles
+  EXPECT_EQ(e.validation_mask.sum(), 2100.0);
+  EXPECT_THROW(fit_dataset({whole}, {}, {Split::blocks, 20.0}), config::schema::DataError);
 }
 
 TEST(FitDataset, ScoresRecordsThatAreHeldOutAndFitsAllOfTheOthers) {
@@ -130,7 +150,11 @@ TEST(Split, IsReadByItsNameAndAnythingElseIsAnError) {
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("third"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("blocks, first-half, second-half"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("first-half, second-half"));
+  }
+  EXPECT_EQ(parse_split("blocks:40"), Split(Split::blocks, 40.0));
+  for (const char* text : {"blocks:", "blocks:1.9", "blocks:4x", "blocks:inf", "blocks:-40"}) {
+    EXPECT_THROW(static_cast<void>(parse_split(text)), config::schema::UsageError) << text;
   }
 }
 
