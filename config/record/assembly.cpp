@@ -131,24 +131,60 @@ class Assembly {
     const auto missing = [this](std::size_t i) {
       return std::isnan(record_.t_s[i]) || std::isnan(record_.u_V[i]) || std::isnan(record_.y_m[i]);
     };
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < record_.t_s.size(); ++i) count += missing(i) ? 1 : 0;
-    if (count == 0) return;
-    row_.reserve(record_.t_s.size() - count);
-    for (std::size_t i = 0; i < record_.t_s.size(); ++i) {
-      if (!missing(i)) row_.push_back(i);
+    if (const std::size_t count = leave_out(missing); count > 0) {
+      record_.notes.push_back(
+          fmt::format("{} {} without a number in time, command or position {} left out", count,
+                      count == 1 ? "row" : "rows", count == 1 ? "is" : "are"));
     }
-    const auto keep = [this](Values& values) {
-      for (std::size_t k = 0; k < row_.size(); ++k) values[k] = values[row_[k]];
-      values.resize(row_.size());
+    leave_out_repeated();
+  }
+
+  /// Leaves out rows; their number. `unwanted` sees the rows before any is moved.
+  template <class Unwanted>
+  std::size_t leave_out(Unwanted unwanted) {
+    const std::size_t rows = record_.t_s.size();
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < rows; ++i) {
+      if (!unwanted(i)) kept.push_back(i);
+    }
+    if (kept.size() == rows) return 0;
+    const auto keep = [&kept](auto& values) {
+      for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+      values.resize(kept.size());
     };
     keep(record_.t_s);
     keep(record_.u_V);
     keep(record_.y_m);
     for (auto& [name, values] : record_.further) keep(values);
-    record_.notes.push_back(
-        fmt::format("{} {} without a number in time, command or position {} left out", count,
-                    count == 1 ? "row" : "rows", count == 1 ? "is" : "are"));
+    if (row_.empty()) {
+      row_ = std::move(kept);
+    } else {
+      keep(row_);
+    }
+    return rows - record_.t_s.size();
+  }
+
+  /// Rows that a logger wrote twice: where every row with the time of the one before has all its
+  /// numbers too. A clock too coarse for the rate repeats times alone.
+  void leave_out_repeated() {
+    const auto same_time = [this](std::size_t i) {
+      return i > 0 && record_.t_s[i] == record_.t_s[i - 1];
+    };
+    const auto same = [](const Values& values, std::size_t i) {
+      return values[i] == values[i - 1] || (std::isnan(values[i]) && std::isnan(values[i - 1]));
+    };
+    for (std::size_t i = 0; i < record_.t_s.size(); ++i) {
+      if (!same_time(i)) continue;
+      if (!same(record_.u_V, i) || !same(record_.y_m, i)) return;
+      for (const auto& [name, values] : record_.further) {
+        if (!same(values, i)) return;
+      }
+    }
+    if (const std::size_t count = leave_out(same_time); count > 0) {
+      record_.notes.push_back(fmt::format("{} {} the row before and {} left out", count,
+                                          count == 1 ? "row repeats" : "rows repeat",
+                                          count == 1 ? "is" : "are"));
+    }
   }
 
   [[nodiscard]] std::string place(std::size_t i) const {

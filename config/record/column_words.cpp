@@ -69,6 +69,8 @@ const Words kOtherWords{"error*", "err",      "fehler*",   "deviation", "abweich
                         "sim*",   "estimat*", "observer*", "offset",    "status",    "tank"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
+/// Of the valve, whose position is not the rod's and whose reading is no command.
+const Words kSpoolWords{"spool*", "schieber*"};
 
 constexpr int kCanonical = 100;
 constexpr int kStrong = 50;
@@ -169,8 +171,11 @@ int score(Role role, const ReadColumn& column) {
   }
   if (!is_plain(column)) return 0;
   const int measured = has_word(column.words, kMeasuredWords) ? 5 : 0;
+  const bool spool = has_word(column.words, kSpoolWords);
+  if (role == Role::position && spool) return 0;
   if (role == Role::command) {
     const bool positional = has_word(column.words, kPositionWords);
+    if (spool && (positional || measured > 0)) return 0;
     if (positional && !unit.known()) return 0;
     if (has_word(column.words, kCommandWords)) return kStrong;
     return has_word(column.words, kWeakCommandWords) && !positional ? kWeak : 0;

@@ -157,9 +157,25 @@ class FormFinder {
       names.pop_back();
       return true;
     }
+    if (names.size() + 1 == columns && counts_rows(line, names.size())) {
+      names.insert(names.begin(), "");
+      return true;
+    }
     const bool open_end = form_.kinds.back() == FieldKind::missing && names.size() + 1 == columns;
     if (open_end) names.emplace_back();
     return open_end;
+  }
+
+  /// True for R's tables: every name quoted, none for the column of row numbers.
+  [[nodiscard]] bool counts_rows(std::string_view line, std::size_t names) const {
+    if (std::count(line.begin(), line.end(), '"') != static_cast<std::ptrdiff_t>(2 * names)) {
+      return false;
+    }
+    const std::vector<double>& numbers = form_.head.front();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] != static_cast<double>(i + 1)) return false;
+    }
+    return numbers.size() > 1;
   }
 
   /// How many of time, command and position a line of names gives.

@@ -578,6 +578,115 @@ def two_clocks_resampled():
                   arguments=["--map", "t=Time y,u=Cmd@Time u,y=Pos", "--resample"], tolerance=1e-8))
 
 
+# --- test machines, controllers, oscilloscopes ----------------------------------------------------
+
+@style("dat")
+def mts_basic_testware():
+    return ("MTS793|BTW|ENU|1|2|.|/|:|1|0|0|A\r\n\r\nData Acquisition: Timed\r\nStation Name: frame 3\r\n"
+            "Time\tAxial Displacement\tAxial Command\tAxial Force\r\nSec\tmm\tV\tkN\r\n" +
+            rows([T, Y_MM, U_V, [12.5] * len(T)], "\t", end="\r\n"),
+            truth(further={"Axial_Force_N": [12500.0] * len(T)}))
+
+
+@style("asc")
+def hbm_catman():
+    text = ("CATMAN\r\nAnzahl Kanäle: 3\r\n\r\nZeit  1 - Standardmessrate [s]\tVentilspannung [V]\tWeg [mm]\r\n" +
+            rows([T, U_V, Y_MM], "\t", end="\r\n", comma=True))
+    return text.encode("latin-1"), truth()
+
+
+@style()
+def instron_bluehill():
+    return ("Time,Displacement,Command\n(s),(mm),(V)\n" + rows([T, Y_MM, U_V], quote=True), truth())
+
+
+@style()
+def delta_rmc_plot():
+    inches = [y / 0.0254 for y in Y_M]
+    return ("Plot 1\nTime (s),Axis0 Actual Position (in),Axis0 Target Position (in),Axis0 Control Output (V)\n" +
+            rows([T, inches, inches, U_V]), truth(further={"reference_m": Y_M}, tolerance=1e-8))
+
+
+@style()
+def siemens_trace():
+    return ('"Sample";"Time (ms)";"DB1.Valve_Cmd (V)";"DB1.Pos_Act (mm)"\r\n' +
+            rows([[str(k) for k in range(len(T))], [1000 * t for t in T], U_V, Y_MM], ";", end="\r\n", comma=True),
+            truth())
+
+
+@style()
+def oscilloscope_with_a_mapping():
+    return ("Model,MDO3024\nSample Interval,0.005,\nVertical Units,V,V\nLabel,,\nTIME,CH1,CH2\n" +
+            rows([T, U_V, [y / 20 for y in Y_MM]]),
+            truth(arguments=["--map", "t=TIME[s],u=CH1[V],y=CH2*20[mm]"], tolerance=1e-8))
+
+
+@style()
+def time_of_day_with_am_and_pm():
+    text = ["%s PM" % clock(t, begin=36720.0) for t in T]
+    return "Time,Command (V),Position (mm)\n" + rows([text, U_V, Y_MM]), truth(tolerance=1e-6)
+
+
+@style("txt")
+def r_write_table():
+    lines = "".join('"%d" %.10g %.10g %.10g\n' % (k + 1, *row) for k, row in enumerate(zip(T, U_V, Y_MM)))
+    return '"time_s" "u_V" "y_mm"\n' + lines, truth()
+
+
+@style()
+def every_row_twice():
+    lines = "".join(2 * ("%.10g,%.10g,%.10g\n" % row) for row in zip(T, U_V, Y_MM))
+    return "Time [s],Command [V],Position [mm]\n" + lines, truth()
+
+
+@style()
+def one_row_twice_and_one_empty():
+    lines = ["%.10g,%.10g,%.10g\n" % row for row in zip(T, U_V, Y_MM)]
+    lines[200] = 2 * lines[200]
+    lines[300] = "%.10g,,%.10g\n" % (T[300], Y_MM[300])
+    kept = [k for k in range(len(T)) if k != 300]
+    return ("Time [s],Command [V],Position [mm]\n" + "".join(lines),
+            truth([T[k] for k in kept], [U_V[k] for k in kept], [Y_M[k] for k in kept]))
+
+
+@style()
+def spool_beside_the_rod():
+    return ("Time [s];Valve command [V];Spool position [mm];Valve spool actual [V];Position [mm]\n" +
+            rows([T, U_V, [0.1 * u for u in U_V], U_V, Y_MM], ";"),
+            truth(further={"Spool_position_m": [1e-4 * u for u in U_V]}, tolerance=1e-8))
+
+
+@style()
+def spool_as_the_command():
+    return ("Time [s];Valve command [V];Spool position [mm];Position [mm]\n" +
+            rows([T, U_V, [0.1 * u for u in U_V], Y_MM], ";"),
+            truth(u=[1e-4 * u for u in U_V], units=("m", "m"), arguments=["--map", "u=Spool position"],
+                  tolerance=1e-8))
+
+
+@style()
+def bad_only_a_spool():
+    return ("Time [s];Valve command [V];Spool position [mm]\n" + rows([T, U_V, [0.1 * u for u in U_V]], ";"),
+            refused("lacks a position column"))
+
+
+@style()
+def bad_header_one_name_short():
+    return ("Time [s],Command [V]\n" + rows([T, U_V, Y_MM]), refused("no header", "--map"))
+
+
+@style()
+def bad_long_format():
+    lines = "".join('"%s";%.10g;%.10g\n' % (name, t, v) for row in zip(T, U_V, Y_MM)
+                    for name, t, v in (("Cmd", row[0], row[1]), ("Pos", row[0], row[2])))
+    return '"VarName";"Time [s]";"VarValue"\n' + lines, refused("lacks a command")
+
+
+@style()
+def bad_only_a_velocity():
+    return ("Time [s],Command [V],Velocity [mm/s]\n" + rows([T, U_V, Y_MM]), refused("lacks a position"))
+
+
 # --- refusals ------------------------------------------------------------------------------------
 
 @style()
