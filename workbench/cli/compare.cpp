@@ -135,7 +135,7 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   add_ignored(command, arguments->request.ignored);
   command.add_option("--residuals", arguments->residuals,
                      "file for every sample: command, position, free run, drift-corrected run, "
-                     "residuals, states of the free run (.csv, .mat)");
+                     "residuals, states of the free run (.csv, .mat, .h5)");
   add_observer(command, arguments->request.observer_per_s)->check(positive_number());
   add_set(command, arguments->request.assignments);
   command.add_flag("--all", arguments->all,

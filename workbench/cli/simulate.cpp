@@ -245,7 +245,7 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
   command.add_option("--command", arguments->command,
                      "RECORD whose command drives the plant in open loop, at its rate and from "
-                     "its first position; -o also as .mat, with the states");
+                     "its first position; -o also as .mat or .h5, with the states");
   add_reading(command, arguments->reading);
   command.add_flag("--pressures", arguments->pressures,
                    "columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa as well");

@@ -17,8 +17,8 @@ namespace workbench::exchange {
 [[nodiscard]] std::string mat_file(const std::string& input, const Kinds& kinds,
                                    const config::record::ReadOptions& reading = {});
 
-/// `record` by the ending of `file`: .csv or .mat. Throws config::schema::UsageError, which names
-/// `option`, for another one.
+/// `record` by the ending of `file`: .csv, .mat, .h5 or .hdf5. Throws config::schema::UsageError,
+/// which names `option`, for another one.
 void write_record_file(const config::record::Record& record, const std::string& file,
                        const std::string& option);
 

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <map>
 
+#include "config/record/hdf5/hdf5_writer.h"
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
@@ -202,11 +203,13 @@ void write_record_file(const config::record::Record& record, const std::string& 
     MatWriter writer;
     write_record(record, writer);
     config::record::write_whole(file, writer.finish());
+  } else if (file.ends_with(".h5") || file.ends_with(".hdf5")) {
+    config::record::write_whole(file, config::record::hdf5::hdf5_file(record));
   } else if (file.ends_with(".csv")) {
     config::record::write_csv(record, file);
   } else {
-    throw config::schema::UsageError(option + " " + file +
-                                     ": its ending names no format; allowed: .csv, .mat");
+    throw config::schema::UsageError(
+        option + " " + file + ": its ending names no format; allowed: .csv, .mat, .h5, .hdf5");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "config/record/hdf5/handle.h"
 #include "config/schema/error.h"
 
 namespace config::record::hdf5 {
@@ -22,23 +23,6 @@ constexpr hsize_t kMostColumns = 64;
 constexpr double kMostPerByte = 1000.0;
 constexpr double kMostNumbers = 1U << 27U;  ///< a gibibyte, as of other MAT files
 constexpr std::size_t kLongestText = 256;
-
-/// An identifier of the library, closed with the object.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) (void)close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  [[nodiscard]] hid_t get() const noexcept { return id_; }
-  [[nodiscard]] bool valid() const noexcept { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
 
 /// The text of an attribute; none where there is none or it is no text.
 std::optional<std::string> text_attribute(hid_t object, const char* name) {
