@@ -23,6 +23,8 @@ struct FitReport {
 
 /// Summary as sentences, most important first.
 [[nodiscard]] std::vector<std::string> words(const FitReport& outcome);
+/// Names of the records, each once where its blocks are fitted apart.
+[[nodiscard]] std::vector<std::string> record_names(const FitReport& outcome);
 /// Names of the fitted parameters.
 [[nodiscard]] std::vector<std::string> fitted_names(const greybox::EstimationSummary& estimation);
 /// "held by its prior", "at its lower bound", ... or empty.

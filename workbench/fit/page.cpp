@@ -187,9 +187,8 @@ present::Report to_report(const FitReport& o) {
   const greybox::EstimationSummary& e = o.estimation;
   const std::vector<std::string> said = words(o);
   present::Report made;
-  const auto name = [](const greybox::Dataset& record) { return file_name(record.name); };
   made.title = o.prepared->problem.model.name + " fitted to " +
-               config::schema::joined_by(o.prepared->problem.data.records, name);
+               config::schema::joined_by(record_names(o), file_name);
   made.verdict = said.front();
   for (std::size_t i = 1; i < said.size();
        ++i) {  // unidentifiable parameters have a section of their own

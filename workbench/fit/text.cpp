@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/nonlinear/profile.h"
 #include "workbench/fit/fit_report.h"
@@ -106,12 +107,8 @@ std::string plot(const greybox::EstimatedParameter& p) {
 
 std::string to_text(const FitReport& o) {
   const PreparedFit& prepared = *o.prepared;
-  std::string names;
-  std::size_t r = 0;
-  for (const auto& record : prepared.problem.data.records) {
-    names += (r++ == 0 ? "" : ", ") + record.name;
-  }
-  std::string out = prepared.problem.model.name + " fitted to " + names + "\n\n";
+  std::string out = prepared.problem.model.name + " fitted to " +
+                    config::schema::joined(record_names(o)) + "\n\n";
   for (const std::string& line : words(o)) out += wrapped(line, "  ");
   out += "\n" + table(o.estimation.parameters);
   for (const greybox::EstimatedParameter& p : o.estimation.parameters) {

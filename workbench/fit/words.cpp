@@ -210,6 +210,16 @@ std::vector<std::string> fitted_names(const greybox::EstimationSummary& estimati
   return names;
 }
 
+std::vector<std::string> record_names(const FitReport& o) {
+  std::vector<std::string> names;
+  for (const greybox::Dataset& record : o.prepared->problem.data.records) {
+    if (std::find(names.begin(), names.end(), record.name) == names.end()) {
+      names.push_back(record.name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> words(const FitReport& o) {
   const greybox::EstimationSummary& e = o.estimation;
   std::vector<std::string> said{size_words(o), heldout_words(e), moved_words(e), bound_words(e)};
