@@ -1,9 +1,11 @@
 // A servo known only by command and position: the command sets the speed, through a lag.
 //
-//   y' = opening(x),   tau x' = gain u - x      (tau = 0: x = gain u)
+//   y' = opening(x),   tau x' = gain u - x                            (tau = 0: x = gain u)
+//                      tau^2 x'' + 2 zeta tau x' + x = gain u         where zeta > 0
 //
 // y  position, m     x  speed that the valve asks for, m/s     u  command, V
 // gain  m/s per V    tau  time constant, s; 0 is none
+// zeta  damping ratio of a lag of second order with the natural frequency 1 / tau
 // The quasi-static limit of the hydraulic actuator: pressures and mass follow at once. Effects act
 // on the command and on x (deadband, flow_asymmetry, underlap: x stands for the spool position,
 // gain for its travel per volt), and on the reading. There is no end of the stroke: position is
@@ -30,6 +32,7 @@ class VelocityServo {
   struct Parameters {
     S gain_mps_per_V = 0.05;
     S time_constant_s = 0.0;
+    S damping_ratio = 0.0;
 
     template <class V>
     void visit(V&& v) {
@@ -38,6 +41,11 @@ class VelocityServo {
       v(ParameterInfo{"time_constant_s", "lag of the speed behind the command; 0 is none", 0.0,
                       10.0, 0.01, 0.0, 0.2},
         time_constant_s);
+      v(ParameterInfo{"damping_ratio",
+                      "of a lag of second order, natural frequency 1 / time_constant_s; 0: first "
+                      "order",
+                      0.0, 100.0, 0.7, 0.0, 0.3},
+        damping_ratio);
     }
   };
 
@@ -54,12 +62,13 @@ class VelocityServo {
   };
 
   struct State {
-    S y_m, drive_mps;
+    S y_m, drive_mps, drive_mps2;
 
     template <class V>
     void visit(V&& v) {
       v("y_m", y_m);
       v("drive_mps", drive_mps);
+      v("drive_mps2", drive_mps2);
     }
   };
 
@@ -69,7 +78,7 @@ class VelocityServo {
   effects::Effects<S> effects;
 
   void reset() {
-    state = {initial.y_m, initial.drive_mps};
+    state = {initial.y_m, initial.drive_mps, S(0.0)};
     effects.reset();
   }
 
@@ -80,10 +89,11 @@ class VelocityServo {
     });
     effects.prepare(step_s);
     step_s_ = step_s;
+    second_order_ = !all(parameters.damping_ratio <= S(0.0));
     constexpr double kNode = 0.21132486540518712;  // (1 - 1/sqrt 3) / 2
-    early_ = remains(kNode * step_s);
-    late_ = remains((1.0 - kNode) * step_s);
-    whole_ = remains(step_s);
+    early_ = response(kNode * step_s);
+    late_ = response((1.0 - kNode) * step_s);
+    whole_ = response(step_s);
   }
 
   /// One step with u_V held; u_V that is not a number counts as 0.
@@ -91,12 +101,29 @@ class VelocityServo {
     const S from_m = state.y_m;
     const S goal_mps = parameters.gain_mps_per_V * effects.command_V(limits::known_V(u_V));
     const S gap_mps = state.drive_mps - goal_mps;
-    const S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_);
-    const S bent_mps = S(0.5) * (bent(goal_mps + gap_mps * early_) +  //
-                                 bent(goal_mps + gap_mps * late_));
+    S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_.of_gap);
+    S early_mps = gap_mps * early_.of_gap;
+    S late_mps = gap_mps * late_.of_gap;
+    S left_mps = gap_mps * whole_.of_gap;
+    if (second_order_) {
+      const S tau_s = parameters.time_constant_s;
+      const S rate_mps2 = state.drive_mps2;
+      early_mps = early_mps + rate_mps2 * early_.of_rate_s;
+      late_mps = late_mps + rate_mps2 * late_.of_rate_s;
+      left_mps = left_mps + rate_mps2 * whole_.of_rate_s;
+      const S left_mps2 = gap_mps * whole_.rate_of_gap_per_s + rate_mps2 * whole_.rate_of_rate;
+      // the equation of the lag, integrated over the step
+      lag_m = select(parameters.damping_ratio > S(0.0),
+                     tau_s * (S(2.0) * parameters.damping_ratio * (gap_mps - left_mps) +
+                              tau_s * (rate_mps2 - left_mps2)),
+                     lag_m);
+      state.drive_mps2 = clamp(left_mps2, S(-kDrive_mps2), S(kDrive_mps2));
+    }
+    const S bent_mps = S(0.5) * (bent(goal_mps + early_mps) +  //
+                                 bent(goal_mps + late_mps));
     const S travel_m = (goal_mps + bent_mps) * S(step_s_) + lag_m;
     state.y_m = clamp(from_m + travel_m, S(-limits::kPosition_m), S(limits::kPosition_m));
-    state.drive_mps = clamp(goal_mps + gap_mps * whole_, S(-kDrive_mps), S(kDrive_mps));
+    state.drive_mps = clamp(goal_mps + left_mps, S(-kDrive_mps), S(kDrive_mps));
     effects.accept(state.y_m - from_m, speed_mps());
   }
 
@@ -105,10 +132,41 @@ class VelocityServo {
  private:
   static constexpr double kDrive_mps = 1e6;  ///< the largest gain at the largest command
 
-  /// Part of a difference between x and gain u that is left after the time.
-  S remains(double time_s) const {
-    return exp(-min(S(time_s) / max(parameters.time_constant_s, S(1e-12)), S(700.0))) *
-           select(parameters.time_constant_s > S(0.0), S(1.0), S(0.0));
+  static constexpr double kDrive_mps2 = 1e18;
+
+  /// What a gap between x and gain u, and the rate at which it changes, leave after a time: of the
+  /// gap  of_gap gap + of_rate rate,  of the rate  rate_of_gap gap + rate_of_rate rate.
+  struct Response {
+    S of_gap, of_rate_s, rate_of_gap_per_s, rate_of_rate;
+  };
+
+  Response response(double time_s) const {
+    const S tau_s = parameters.time_constant_s;
+    const S first = exp(-min(S(time_s) / max(tau_s, S(1e-12)), S(700.0))) *
+                    select(tau_s > S(0.0), S(1.0), S(0.0));
+    const Response lag{first, S(0.0), S(0.0), S(0.0)};
+    if (!second_order_) return lag;
+    // roots -zeta +- w of s^2 + 2 zeta s + 1, w = sqrt(zeta^2 - 1), real or imaginary, in 1 / tau;
+    // w is kept off the double root, where the error of that is its square
+    constexpr double kOffDoubleRoot = 1e-5;
+    constexpr double kHalfPi = 1.5707963267948966;
+    constexpr double kLongest = 1e5;  // in tau: all is over
+    const S zeta = parameters.damping_ratio;
+    const S time = min(S(time_s) / max(tau_s, S(1e-12)), S(kLongest));
+    const S squared = zeta * zeta - S(1.0);
+    const S w = max(sqrt(abs(squared)), S(kOffDoubleRoot));
+    const auto decayed = [](const S& exponent) { return exp(-min(exponent, S(700.0))); };
+    const S envelope = decayed(zeta * time);
+    const S slow = decayed(time / (zeta + w));
+    const S fast = decayed(time * (zeta + w));
+    const auto real = squared > S(0.0);
+    const S sine = select(real, S(0.5) * (slow - fast), envelope * sin(w * time)) / w;
+    const S cosine = select(real, S(0.5) * (slow + fast), envelope * sin(w * time + S(kHalfPi)));
+    const auto second = [&](const S& value, const S& other) {
+      return select(zeta > S(0.0), select(tau_s > S(0.0), value, S(0.0)), other);
+    };
+    return {second(cosine + zeta * sine, lag.of_gap), second(tau_s * sine, S(0.0)),
+            second(-sine / max(tau_s, S(1e-12)), S(0.0)), second(cosine - zeta * sine, S(0.0))};
   }
   /// Speed behind the valve's openings; an underlapped port's is the net one of its two edges.
   S opened(const S& drive_mps) const {
@@ -121,7 +179,8 @@ class VelocityServo {
   S bent(const S& drive_mps) const { return opened(drive_mps) - drive_mps; }
 
   double step_s_ = 0.0;
-  S early_, late_, whole_;
+  bool second_order_ = false;  ///< in any lane
+  Response early_, late_, whole_;
 };
 
 }  // namespace plant_sim

@@ -1,6 +1,8 @@
 // The two simpler plants against closed forms.
 #include <gtest/gtest.h>
 
+#include <complex>
+
 #include "tests/plant_sim/support.h"
 
 namespace plant_sim::testing {
@@ -23,6 +25,47 @@ TEST(VelocityServo, LagsByItsTimeConstantWhateverTheStep) {
       EXPECT_NEAR(plant->state.y_m, 0.1 * (0.3 - lost_s), 1e-13) << tau_s << " " << step_s;
     }
   }
+}
+
+// Roots p, q of tau^2 s^2 + 2 zeta tau s + 1: the step response is 1 - (q e^pt - p e^qt) / (q - p),
+// in complex numbers for zeta below 1.
+TEST(VelocityServo, LagsByTheStepResponseOfSecondOrderWhateverTheStep) {
+  using Complex = std::complex<double>;
+  for (const double tau_s : {0.0007, 0.02, 0.3}) {
+    for (const double zeta : {0.2, 0.7, 0.999, 1.5, 20.0}) {
+      const Complex w = std::sqrt(Complex(zeta * zeta - 1.0));
+      const Complex p = (-zeta + w) / tau_s;
+      const Complex q = (-zeta - w) / tau_s;
+      const double t = 0.3;
+      const Complex lost_s =
+          (q / p * (std::exp(p * t) - 1.0) - p / q * (std::exp(q * t) - 1.0)) / (q - p);
+      const double speed = 1.0 - ((q * std::exp(p * t) - p * std::exp(q * t)) / (q - p)).real();
+      for (const double step_s : {1e-2, 1e-3}) {
+        auto plant = at_rest<Servo>();
+        plant->parameters.time_constant_s = tau_s;
+        plant->parameters.damping_ratio = zeta;
+        hold(*plant, 2.0, t, step_s);
+        EXPECT_NEAR(plant->state.y_m, 0.1 * (t - lost_s.real()), 1e-12) << tau_s << " " << zeta;
+        EXPECT_NEAR(plant->speed_mps(), 0.1 * speed, 1e-12) << tau_s << " " << zeta;
+      }
+    }
+  }
+}
+
+TEST(VelocityServo, HasTheDoubleRootsResponseAtCriticalDamping) {
+  auto plant = at_rest<Servo>();
+  plant->parameters.time_constant_s = 0.05;
+  plant->parameters.damping_ratio = 1.0;
+  hold(*plant, 2.0, 0.1);
+  const double x = 0.1 / 0.05;
+  EXPECT_NEAR(plant->speed_mps(), 0.1 * (1.0 - (1.0 + x) * std::exp(-x)), 1e-10);
+}
+
+TEST(VelocityServo, OfSecondOrderWithoutTimeConstantHasNoLag) {
+  auto plant = at_rest<Servo>();
+  plant->parameters.damping_ratio = 0.7;
+  hold(*plant, -1.5, 2.0);
+  EXPECT_NEAR(plant->state.y_m, -0.15, 1e-12);
 }
 
 TEST(VelocityServo, PassesTheDeadbandBehindTheLag) {

@@ -95,6 +95,13 @@ void second_order(double stiffness_N_per_m, double mass_kg, double damping_N_s_p
   out.push_back({"damping_ratio", "damping of it", damping_N_s_per_m / (2.0 * rate * mass_kg)});
 }
 
+/// -3 dB frequency over the natural one of a lag of second order, where |G| = 1/sqrt 2:
+/// (1 - r^2)^2 + (2 zeta r)^2 = 2, solved so that a large zeta cancels nothing.
+double bandwidth_ratio(double zeta) {
+  const double k = 2.0 * zeta * zeta - 1.0;
+  return 1.0 / std::sqrt(k + std::sqrt(k * k + 1.0));
+}
+
 void hydraulic(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>& out) {
   constexpr double kDatasheetDrop_Pa = 35e5;  // an edge, as flows of servovalves are rated
   const double orifice = p("discharge_coefficient") * p("area_gradient_m") *
@@ -113,11 +120,9 @@ void hydraulic(const ModelFile& model, const Values& p, std::vector<DerivedQuant
   second_order(oil, p("mass_kg"), p("damping_N_s_per_m"), "mass on the oil at mid-stroke", out);
   const double valve = p("valve_natural_frequency_rad_per_s");
   const double zeta = p("valve_damping_ratio");
-  // |G| = 1/sqrt 2: (1 - r^2)^2 + (2 zeta r)^2 = 2
-  const double half = 1.0 - 2.0 * zeta * zeta;
   out.push_back({"valve_natural_frequency_Hz", "natural frequency of the spool", valve / kTwoPi});
   out.push_back({"valve_bandwidth_Hz", "-3 dB frequency of the spool",
-                 valve / kTwoPi * std::sqrt(half + std::sqrt(half * half + 1.0))});
+                 valve / kTwoPi * bandwidth_ratio(zeta)});
 }
 
 /// The side of a two-area cylinder that is filled, and the one that is emptied.
@@ -207,7 +212,9 @@ void servo(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>
   speeds(model, out);
   const double lag_s = p("time_constant_s");
   if (lag_s > 0.0) {
-    out.push_back({"bandwidth_Hz", "-3 dB frequency of the speed", 1.0 / (kTwoPi * lag_s)});
+    const double zeta = p("damping_ratio");
+    const double ratio = zeta > 0.0 ? bandwidth_ratio(zeta) : 1.0;
+    out.push_back({"bandwidth_Hz", "-3 dB frequency of the speed", ratio / (kTwoPi * lag_s)});
   }
   out.push_back({"loop_rate_per_s", "rate of the position loop, kp times the gain",
                  model.loop.kp_V_per_m * p("gain_mps_per_V")});

@@ -30,6 +30,28 @@ Question mass(double usual) {
           usual};
 }
 
+Question valve_step() {
+  return {"valve-step-ms",
+          "time of the valve's step response to 90 %, where its sheet has no -3 dB frequency",
+          "valve's sheet; takes the place of valve-Hz, 0 is none",
+          0.0,
+          1e4,
+          0.0};
+}
+
+/// -3 dB frequency of the valve. A lag of second order, damped by 0.6 to 1, passes 90 % of a step
+/// after 0.31 to 0.40 of that frequency's period.
+double valve_Hz(const Answers& a) {
+  const double step_ms = a.at("valve-step-ms");
+  return step_ms > 0.0 ? 0.4e3 / step_ms : a.at("valve-Hz");
+}
+
+std::string valve_words(const Answers& a) {
+  const double step_ms = a.at("valve-step-ms");
+  return fmt::format("-3 dB at {:g} Hz{}; it falls with the amplitude", valve_Hz(a),
+                     step_ms > 0.0 ? fmt::format(", from a step of {:g} ms", step_ms) : "");
+}
+
 /// Those that both kinds of cylinders ask.
 std::vector<Question> cylinder_questions() {
   return {
@@ -55,7 +77,8 @@ std::vector<Question> cylinder_questions() {
       {"damping-N-s-per-m", "viscous damping", "on no data sheet: a guess, it is fitted", 0.0, 1e7,
        1000.0},
       {"bulk-MPa", "bulk modulus of oil and hoses", "700 with hoses, 1200 with pipes", 10.0, 1e4,
-       800.0}};
+       800.0},
+      valve_step()};
 }
 
 std::vector<Question> double_rod_questions() {
@@ -127,6 +150,19 @@ const std::vector<Kind>& all_kinds() {
                        0.0,
                        1e4,
                        10.0};
+    const Question valve{
+        "valve-Hz",
+        "-3 dB frequency of the speed, of a lag of second order",
+        "valve's Bode plot at small amplitude; takes the place of lag-ms, 0 is none",
+        0.0,
+        1e4,
+        0.0};
+    const Question damping{"valve-damping",
+                           "damping ratio of that lag",
+                           "from the Bode plot; 0.7 to 1 is usual",
+                           0.1,
+                           5.0,
+                           0.8};
     const Question full{"full-command-V",
                         "command of full speed",
                         "drive's set-up; 100 where the record has %",
@@ -138,13 +174,19 @@ const std::vector<Kind>& all_kinds() {
                     {{"full-speed-mmps", "speed at full command", "drive's set-up, or a try", 1e-3,
                       1e5, kMust},
                      full,
-                     lag}});
+                     lag,
+                     valve,
+                     damping,
+                     valve_step()}});
     list.push_back(
         {"rotary-servo",
          "turning axis whose command sets the speed; nothing else is known",
          {{"full-speed-rpm", "speed at full command", "drive's set-up, or a try", 1e-3, 1e6, kMust},
           full,
-          lag}});
+          lag,
+          valve,
+          damping,
+          valve_step()}});
     return list;
   }();
   return all;
@@ -194,7 +236,7 @@ double speed_per_V(const Cylinder& c, double ahead_m2, double behind_m2) {
 double spool_rad_per_s(const Answers& a) {
   const double zeta = a.at("valve-damping");
   const double k = 2.0 * zeta * zeta - 1.0;
-  return 2.0 * kPi * a.at("valve-Hz") * std::sqrt(k + std::sqrt(k * k + 1.0));
+  return 2.0 * kPi * valve_Hz(a) * std::sqrt(k + std::sqrt(k * k + 1.0));
 }
 
 void double_rod(const Answers& a, ModelWriter& w) {
@@ -219,8 +261,7 @@ void double_rod(const Answers& a, ModelWriter& w) {
   w.value("valve_gain_m_per_V", travel_m_per_V, 0.1,
           fmt::format("{:g} l/min at {:g} bar over both edges and {:g} V, +-10 %",
                       a.at("rated-flow-lpm"), a.at("rated-drop-bar"), c.command_V));
-  w.value("valve_natural_frequency_rad_per_s", spool_rad_per_s(a), 0.3,
-          fmt::format("-3 dB at {:g} Hz; it falls with the amplitude", a.at("valve-Hz")));
+  w.value("valve_natural_frequency_rad_per_s", spool_rad_per_s(a), 0.3, valve_words(a));
   w.value("valve_damping_ratio", a.at("valve-damping"), 0.3, "");
   w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
   const double half_m3 = 1e-6 * a.at("hose-cm3") + 0.5 * c.rod_side_m2 * c.stroke_m;
@@ -254,7 +295,7 @@ void single_rod(const Answers& a, ModelWriter& w) {
           fmt::format("over one edge: half of {:g} bar", a.at("rated-drop-bar")));
   w.value("rated_command_V", c.command_V, kMust, "");
   w.value("valve_area_ratio", a.at("valve-area-ratio"), kMust, "");
-  w.value("valve_bandwidth_Hz", a.at("valve-Hz"), 0.3, "-3 dB; it falls with the amplitude");
+  w.value("valve_bandwidth_Hz", valve_Hz(a), 0.3, valve_words(a));
   w.value("valve_damping_ratio", a.at("valve-damping"), 0.3, "");
   w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
   const double oil =
@@ -324,9 +365,15 @@ void servo(double full_mps, bool rotary, const Answers& a, ModelWriter& w) {
   w.begin("velocity_servo", rotary);
   w.value("gain_mps_per_V", gain, 0.1,
           fmt::format("full speed over {:g} V", a.at("full-command-V")));
-  const double lag_s = 1e-3 * a.at("lag-ms");
-  w.value("time_constant_s", lag_s, lag_s > 0.0 ? 0.5 : kMust,
-          lag_s > 0.0 ? "a guess within 50 %" : "");
+  double lag_s = 1e-3 * a.at("lag-ms");
+  if (valve_Hz(a) > 0.0) {
+    lag_s = 1.0 / spool_rad_per_s(a);
+    w.value("time_constant_s", lag_s, 0.3, "1 over the natural frequency: " + valve_words(a));
+    w.value("damping_ratio", a.at("valve-damping"), 0.3, "a lag of second order");
+  } else {
+    w.value("time_constant_s", lag_s, lag_s > 0.0 ? 0.5 : kMust,
+            lag_s > 0.0 ? "a guess within 50 %" : "");
+  }
   w.start_of_references();
   w.loop(std::min(8.0, lag_s > 0.0 ? 0.25 / lag_s : 8.0) / gain);
 }

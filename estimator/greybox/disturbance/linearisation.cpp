@@ -105,8 +105,8 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
     ensemble->set(*supply, supply_lane, ensemble->get(*supply, supply_lane) + kSupply_Pa);
   }
   std::vector<std::size_t> every;  // all states that a lane must share with the model before a step
-  for (const char* name :
-       {"y_m", "v_mps", "pressure_in_Pa", "pressure_out_Pa", "spool_m", "spool_mps", "drive_mps"}) {
+  for (const char* name : {"y_m", "v_mps", "pressure_in_Pa", "pressure_out_Pa", "spool_m",
+                           "spool_mps", "drive_mps", "drive_mps2"}) {
     if (const auto index = ensemble->find_state(name)) every.push_back(*index);
   }
   const std::size_t samples = record.size();

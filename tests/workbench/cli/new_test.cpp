@@ -102,6 +102,22 @@ TEST(New, ReducesInertiasToTheAxisThatIsMeasured) {
   EXPECT_NEAR(*servo.value("gain_mps_per_V"), 31.4159, 1e-3);
 }
 
+TEST(New, TakesAServosValveByItsBandwidthOrItsStep) {
+  for (const std::vector<std::string>& sheet :
+       {std::vector<std::string>{"--valve-Hz", "20"}, {"--valve-step-ms", "20"}}) {
+    std::vector<std::string> flags{"--full-speed-mmps", "500", "--valve-damping", "0.7"};
+    flags.insert(flags.end(), sheet.begin(), sheet.end());
+    plant_sim::ModelFile servo = made("velocity-servo", flags);
+    const double zeta = *servo.value("damping_ratio");
+    EXPECT_EQ(zeta, 0.7);
+    const double r = 2.0 * M_PI * 20.0 * *servo.value("time_constant_s");
+    EXPECT_NEAR(std::pow(1.0 - r * r, 2) + std::pow(2.0 * zeta * r, 2), 2.0, 1e-4);
+  }
+  plant_sim::ModelFile lag = made("velocity-servo", {"--full-speed-mmps", "500"});
+  EXPECT_EQ(*lag.value("damping_ratio"), 0.0);
+  EXPECT_EQ(*lag.value("time_constant_s"), 0.01);
+}
+
 TEST(New, ThePriorsOfTheFileAreThoseOfAFit) {
   plant_sim::ModelFile motor = made("linear-motor", {"--mass-kg", "12", "--force-constant-N-per-A",
                                                      "80", "--drive-A-per-V", "0.6"});

@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -70,6 +72,10 @@ TEST(Show, DerivesWhatADataSheetStates) {
   const auto servo = shown({model("velocity_servo")});
   EXPECT_NEAR(derived(servo, "steady_speed_negative_mps"), -0.5, 1e-6);
   EXPECT_NEAR(derived(servo, "bandwidth_Hz"), 15.915, 1e-3);
+  // Butterworth: the -3 dB frequency is the natural one
+  const auto second = shown({model("velocity_servo"), "--set",
+                             fmt::format("parameters.damping_ratio={}", std::sqrt(0.5))});
+  EXPECT_NEAR(derived(second, "bandwidth_Hz"), 15.915, 1e-3);
   const auto thesis = shown({model("thesis")});
   // two orifices in series: A v = G x sqrt((Ps - d v/A)/2)
   const double orifice = 0.6 * 2.07e-2 * std::sqrt(2.0 / 847.0) * 2.79e-4;
