@@ -66,7 +66,8 @@ double length_s(const FitDataset& data) {
 }
 
 FitDataset representative_segments(const FitDataset& whole) {
-  const double share = std::min(1.0, kSearched_s / length_s(whole));
+  const double often = std::clamp(kUsualRate_Hz * whole.sample_time_s, 1.0, kMostOften);
+  const double share = std::min(1.0, often * kSearched_s / length_s(whole));
   FitDataset result;
   result.fitted_records = whole.fitted_records;
   result.noise_floor_m = whole.noise_floor_m;

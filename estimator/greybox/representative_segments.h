@@ -8,8 +8,11 @@ namespace estimator::greybox {
 
 /// Total length above which the search uses segments.
 inline constexpr double kLong_s = 240.0;
-/// Approximate total length of the segments.
+/// Approximate total length of the segments at kUsualRate_Hz and above. Slower logs are of slower
+/// rigs, with fewer moves a minute: as many samples of these, but no more than twice as long.
 inline constexpr double kSearched_s = 60.0;
+inline constexpr double kUsualRate_Hz = 200.0;
+inline constexpr double kMostOften = 2.0;
 /// Length of a segment: three training and three validation blocks (Split::blocks).
 inline constexpr double kSegment_s = 6.0 * kBlock_s;
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <utility>
 
 namespace estimator::greybox {
 
@@ -16,16 +17,17 @@ using testing::SizeIs;
 
 constexpr double kSample_s = 0.05;
 
-/// 20 Hz; the rod moves only from `busy_s` on for `busy_for_s` of every two minutes.
-Dataset record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) {
+/// 20 Hz; the rod moves only from `busy_s` on for `busy_for_s` of every minute.
+Dataset record(double length_s, double busy_s = 0.0, double busy_for_s = 60.0,
+               double sample_time_s = kSample_s) {
   Dataset m;
   m.name = "made";
-  m.sample_time_s = kSample_s;
-  const auto samples = static_cast<std::size_t>(std::lround(length_s / kSample_s));
+  m.sample_time_s = sample_time_s;
+  const auto samples = static_cast<std::size_t>(std::lround(length_s / sample_time_s));
   double y_m = 0.3;
   for (std::size_t k = 0; k < samples; ++k) {
-    const double t_s = static_cast<double>(k) * kSample_s;
-    const double within_s = std::fmod(t_s, 120.0);
+    const double t_s = static_cast<double>(k) * sample_time_s;
+    const double within_s = std::fmod(t_s, 60.0);
     if (within_s >= busy_s && within_s < busy_s + busy_for_s) y_m += 1e-4 * std::cos(t_s);
     m.t_s.push_back(t_s);
     m.u_V.push_back(t_s);
@@ -36,22 +38,25 @@ Dataset record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) 
   return m;
 }
 
-TEST(Stretches, OfTenMinutesAreOneTenth) {
-  const FitDataset whole = fit_dataset({record(600.0)}, {});
-  const FitDataset found = representative_segments(whole);
-  EXPECT_NEAR(length_s(whole), 600.0, 1e-9);
-  EXPECT_NEAR(length_s(found), 60.0, 1e-9);
-  EXPECT_THAT(found.records.front().starts, SizeIs(5));
-  EXPECT_EQ(found.noise_floor_m, whole.noise_floor_m);
+TEST(Stretches, OfTenMinutesAreOneTenthAndOneFifthOfASlowLog) {
+  const std::pair<double, std::size_t> rates[] = {{0.0025, 5}, {0.005, 5}, {0.008, 8}, {0.05, 10}};
+  for (const auto& [sample_time_s, segments] : rates) {
+    const FitDataset whole = fit_dataset({record(600.0, 0.0, 60.0, sample_time_s)}, {});
+    const FitDataset found = representative_segments(whole);
+    EXPECT_NEAR(length_s(whole), 600.0, 1e-8);
+    EXPECT_NEAR(length_s(found), 12.0 * static_cast<double>(segments), 1e-8);
+    EXPECT_THAT(found.records.front().starts, SizeIs(segments));
+    EXPECT_EQ(found.least_floor_m, whole.least_floor_m);
+  }
 }
 
 TEST(Stretches, LieWhereTheRodMovesInEachPartOfTheRecord) {
-  const FitDataset found = representative_segments(fit_dataset({record(600.0, 60.0, 15.0)}, {}));
+  const FitDataset found = representative_segments(fit_dataset({record(600.0, 30.0, 15.0)}, {}));
   const Dataset& kept = found.records.front();
-  ASSERT_THAT(kept.starts, SizeIs(5));
-  for (std::size_t i = 0; i < 5; ++i) {
-    const double from_s = kept.t_s[kept.starts[i]] - 120.0 * static_cast<double>(i);
-    EXPECT_THAT(from_s, AllOf(Ge(57.0), Le(66.0)));
+  ASSERT_THAT(kept.starts, SizeIs(10));
+  for (std::size_t i = 0; i < 10; ++i) {
+    const double from_s = kept.t_s[kept.starts[i]] - 60.0 * static_cast<double>(i);
+    EXPECT_THAT(from_s, AllOf(Ge(27.0), Le(36.0)));
   }
 }
 
@@ -72,8 +77,8 @@ TEST(Stretches, KeepWhatEachSampleIsFor) {
     EXPECT_EQ(found.training_mask[here], whole.training_mask[there]);
     EXPECT_EQ(found.validation_mask[here], whole.validation_mask[there]);
   }
-  EXPECT_EQ(settling, 5 * 10);
-  EXPECT_NEAR(found.training_mask.sum(), found.validation_mask.sum(), 50.0);
+  EXPECT_EQ(settling, 10 * 10);
+  EXPECT_NEAR(found.training_mask.sum(), found.validation_mask.sum(), 100.0);
 }
 
 TEST(Stretches, AreTakenOfEveryRecordAndShortOnesStayWhole) {
@@ -81,12 +86,12 @@ TEST(Stretches, AreTakenOfEveryRecordAndShortOnesStayWhole) {
   const FitDataset found = representative_segments(whole);
   ASSERT_THAT(found.records, SizeIs(3));
   EXPECT_EQ(found.fitted_records, 2U);
-  EXPECT_THAT(found.records[0].starts, SizeIs(4));
+  EXPECT_THAT(found.records[0].starts, SizeIs(8));
   EXPECT_EQ(found.records[1].size(), whole.records[1].size());
   EXPECT_THAT(found.records[2].starts, SizeIs(1));
-  EXPECT_THAT(found.starts, testing::ElementsAre(0, 960, 1260));
+  EXPECT_THAT(found.starts, testing::ElementsAre(0, 1920, 2220));
   EXPECT_EQ(found.training_mask.tail(240).sum(), 0.0);
-  EXPECT_EQ(found.validation_mask.head(1260).sum(), 0.0);
+  EXPECT_EQ(found.validation_mask.head(2220).sum(), 0.0);
 }
 
 TEST(Stretches, BeginAnewAfterGapsOfTheRecord) {
@@ -96,7 +101,7 @@ TEST(Stretches, BeginAnewAfterGapsOfTheRecord) {
   for (const std::size_t start : found.records.front().starts) {
     EXPECT_LT(start, found.records.front().size());
   }
-  EXPECT_GE(found.records.front().starts.size(), 5U);
+  EXPECT_GE(found.records.front().starts.size(), 10U);
 }
 
 }  // namespace
