@@ -222,6 +222,7 @@ Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostre
 rt::Clock& Session::choose_clock() {
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  if (virtual_time_ && options_.clock != nullptr) return *options_.clock;
   if (virtual_time_) return virtual_clock_;
   return monotonic_clock_;
 }

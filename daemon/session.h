@@ -5,6 +5,7 @@
 #include <iosfwd>
 
 #include "daemon/daemon_config.h"
+#include "daemon/rt/clock.h"
 
 namespace monitor {
 
@@ -12,6 +13,7 @@ struct SessionOptions {
   bool virtual_time = false;
   std::filesystem::path driving;  ///< file of the SafeStateNote; empty: none
   double duration_s = 0.0;        ///< on the loop's grid; 0: until a signal
+  rt::Clock* clock = nullptr;     ///< in virtual time, in place of an even one
   /// Reads the configuration for a reload; throws config::schema::Error.
   std::function<void(DaemonConfig&)> read;
 };

@@ -1,9 +1,19 @@
 #include "hal/sim/injected_fault.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace hal::sim {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+template <class Belongs>
+std::vector<InjectedFault> those(const std::vector<InjectedFault>& all, Belongs belongs) {
+  std::vector<InjectedFault> chosen;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), belongs);
+  return chosen;
+}
 
 }  // namespace
 
@@ -20,18 +30,29 @@ void InjectedFault::visit(config::schema::Visitor& v) {
   if (kind == "drift") v.number({"rate_mps", "drift of the reading"}, rate_mps, {-1.0, 1.0});
 }
 
-FaultyRod::FaultyRod(const std::vector<InjectedFault>& all, const std::string& id) {
-  for (const InjectedFault& fault : all) {
-    if (fault.rod == id && fault.pressure.empty()) faults_.push_back(fault);
+void ScheduledFaults::look_up(double t_s) noexcept {
+  on_.clear();
+  since_s_ = t_s;
+  until_s_ = kInfinite;
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const InjectedFault& fault = faults_[i];
+    if (fault.at(t_s)) on_.push_back(i);
+    for (const double change_s : {fault.from_s, fault.to_s}) {
+      if (change_s > t_s) until_s_ = std::min(until_s_, change_s);
+    }
   }
 }
+
+FaultyRod::FaultyRod(const std::vector<InjectedFault>& all, const std::string& id)
+    : faults_(those(all, [&id](const InjectedFault& fault) {
+        return fault.rod == id && fault.pressure.empty();
+      })) {}
 
 bool FaultyRod::apply(Reading& reading, double t_s) noexcept {
   const double y_m = reading.y_m;
   bool frozen = false;
   bool valve_unresponsive = false;
-  for (const InjectedFault& fault : faults_) {
-    if (!fault.at(t_s)) continue;
+  faults_.for_each(t_s, [&](const InjectedFault& fault) {
     if (fault.kind == "missing") {
       reading.y_m = kMissing;
       reading.quality = config::signals::Quality::bad;
@@ -49,30 +70,26 @@ bool FaultyRod::apply(Reading& reading, double t_s) noexcept {
     } else {
       valve_unresponsive = true;
     }
-  }
+  });
   if (!frozen) last_y_m_ = y_m;
   return valve_unresponsive;
 }
 
-FaultyPressure::FaultyPressure(const std::vector<InjectedFault>& all, const std::string& id) {
-  for (const InjectedFault& fault : all) {
-    if (fault.pressure == id) faults_.push_back(fault);
-  }
-}
+FaultyPressure::FaultyPressure(const std::vector<InjectedFault>& all, const std::string& id)
+    : faults_(those(all, [&id](const InjectedFault& fault) { return fault.pressure == id; })) {}
 
 void FaultyPressure::apply(InputReading& reading, double t_s) noexcept {
   const double value_Pa = reading.value;
   bool frozen = false;
-  for (const InjectedFault& fault : faults_) {
-    if (!fault.at(t_s)) continue;
+  faults_.for_each(t_s, [&](const InjectedFault& fault) {
     if (fault.kind == "missing") {
       reading = {};
-      continue;
+      return;
     }
     frozen = true;
     reading.value = last_Pa_;
     if (fault.kind == "stale") reading.quality = config::signals::Quality::stale;
-  }
+  });
   if (!frozen) last_Pa_ = value_Pa;
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/schema/visitor.h"
@@ -27,6 +29,29 @@ struct InjectedFault {
   [[nodiscard]] bool at(double t_s) const noexcept { return t_s >= from_s && t_s < to_s; }
 };
 
+/// The faults of one sensor, however many, at the cost of those that are on.
+class ScheduledFaults {
+ public:
+  explicit ScheduledFaults(std::vector<InjectedFault> faults) : faults_(std::move(faults)) {
+    on_.reserve(faults_.size());
+  }
+
+  /// Calls `apply` for each fault that is on at t_s, in the order of the configuration.
+  template <class Apply>
+  void for_each(double t_s, Apply apply) noexcept {
+    if (!(t_s >= since_s_ && t_s < until_s_)) look_up(t_s);
+    for (const std::size_t i : on_) apply(faults_[i]);
+  }
+
+ private:
+  void look_up(double t_s) noexcept;
+
+  std::vector<InjectedFault> faults_;
+  std::vector<std::size_t> on_;  ///< between since_s_ and until_s_
+  double since_s_ = std::numeric_limits<double>::infinity();
+  double until_s_ = 0.0;
+};
+
 /// Applies the faults of one rod sensor to its readings.
 class FaultyRod {
  public:
@@ -37,7 +62,7 @@ class FaultyRod {
   bool apply(Reading& reading, double t_s) noexcept;
 
  private:
-  std::vector<InjectedFault> faults_;
+  ScheduledFaults faults_;
   double last_y_m_ = kMissing;  ///< reading before the freeze
 };
 
@@ -48,7 +73,7 @@ class FaultyPressure {
   void apply(InputReading& reading, double t_s) noexcept;
 
  private:
-  std::vector<InjectedFault> faults_;
+  ScheduledFaults faults_;
   double last_Pa_ = kMissing;  ///< reading before the freeze
 };
 

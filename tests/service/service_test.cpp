@@ -149,9 +149,9 @@ TEST_F(Life, C_ReloadedItRunsOnByTheNewRulesAndKeepsTheOldOnesWhenTheyAreBroken)
   EXPECT_THAT(s().journal(), HasSubstr("1 keys changed"));
   s().configure("[controller.nonsense]\nx = 1\n");
   EXPECT_EQ(machine().run("systemctl reload spoolwatchd").exit_code, 0);
-  EXPECT_TRUE(s().writes("the old configuration stays")) << s().journal();
+  EXPECT_TRUE(s().writes("the old configuration remains active")) << s().journal();
   std::this_thread::sleep_for(std::chrono::seconds(2));  // told once a second
-  EXPECT_THAT(machine().property("StatusText"), HasSubstr("the old configuration stays"));
+  EXPECT_THAT(machine().property("StatusText"), HasSubstr("the old configuration remains active"));
   EXPECT_EQ(machine().daemon(), before);
   EXPECT_THAT(s().order("status").text, HasSubstr(": RUN"));
 }

@@ -8,6 +8,7 @@
 
 #include "config/record/log_reader.h"
 #include "tests/soak/books.h"
+#include "tests/soak/month.h"
 #include "tests/soak/quiet.h"
 #include "tests/soak/week.h"
 
@@ -64,6 +65,14 @@ int run(int argc, char** argv) {
   run->add_flag("--record", week.record, "with the recorder, in a few small files");
   run->add_option("--set", week.more, "for the daemon: table.key=value")->allow_extra_args(false);
 
+  soak::MonthOptions month;
+  month.config = SPOOLWATCH_SOURCE_DIR "/config/demo.toml";
+  auto* uneven = app.add_subcommand("month", "virtual time; devices, clocks, disk and peer fail");
+  uneven->add_option("--hours", month.hours, "of simulated time")->check(CLI::Range(0.2, 100000.0));
+  uneven->add_option("--seed", month.seed, "of faults and noise");
+  uneven->add_option("--set", month.more, "for the daemon: table.key=value")
+      ->allow_extra_args(false);
+
   soak::QuietOptions quiet;
   quiet.config = SPOOLWATCH_SOURCE_DIR "/config/thesis_case3_named.toml";
   auto* stay = app.add_subcommand("quiet", "virtual time without a fault: no alarm may come");
@@ -81,6 +90,7 @@ int run(int argc, char** argv) {
 
   if (add_up->parsed()) return reconcile(folder, report, complete);
   if (stay->parsed()) return be_quiet(quiet);
+  if (uneven->parsed()) return soak::run_month(month, std::cout).problem_count == 0 ? 0 : 1;
   std::vector<std::string> words;
   for (const std::string& set : week.more) words.insert(words.end(), {"--set", set});
   week.more = words;

@@ -1,7 +1,6 @@
 #include "tests/soak/quiet.h"
 
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include <cmath>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "tests/daemon/program/log.h"
 #include "tests/daemon/program/subprocess.h"
 #include "tests/soak/event_pipe.h"
+#include "tests/soak/process.h"
 
 namespace soak {
 namespace {
@@ -18,12 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kRate_Hz = 200.0;
-
-bool runs(pid_t pid) {
-  siginfo_t info{};
-  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-         info.si_pid == 0;
-}
 
 template <class Message>
 Message read(const EventPipe& events) {

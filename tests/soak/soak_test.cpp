@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <sstream>
 
 #include "tests/soak/alarm_watch.h"
 #include "tests/soak/books.h"
 #include "tests/soak/fault_plan.h"
+#include "tests/soak/month_check.h"
 #include "tests/soak/quiet.h"
 #include "tests/soak/week.h"
 
@@ -194,6 +196,115 @@ TEST(Books, TellARecordThatWasDroppedAndCountedFromACompleteLog) {
   std::ostringstream out;
   EXPECT_TRUE(print(books.balance(life.closing, false), out)) << out.str();
   EXPECT_FALSE(print(books.balance(life.closing, true), out)) << "nothing may be missing";
+}
+
+/// A hundred seconds of a plan with one late wake-up, a missing reading and a full disk, as the
+/// daemon sends them; `mutate` sees each message first and may drop it.
+struct Month {
+  static constexpr std::int64_t kPeriod_ns = 5'000'000;
+  std::map<std::string, std::int64_t> report{{"SPOOLWATCH_SAMPLE", 19'987},
+                                             {"SPOOLWATCH_ALARM", 3},
+                                             {"SPOOLWATCH_HEALTH", 1},
+                                             {"unlogged", 10}};
+  std::function<bool(spoolwatch::sample_t&)> sample = [](auto&) { return true; };
+  std::function<bool(spoolwatch::alarm_t&)> alarm = [](auto& a) { return a.name != "jump"; };
+  std::function<void(spoolwatch::health_t&)> health = [](auto&) {};
+
+  [[nodiscard]] std::vector<std::string> problems() const {
+    MonthPlan plan(1, 1.0);
+    plan.late = {{1'000'000'000, 14'000'000}};
+    plan.steps = {{2'000'000'000, -5'000'000}};
+    plan.devices = {{"missing", "missing", 10.0, 12.0}};
+    plan.disk = {{DiskTrouble::full, 20'000'000'000, 30'000'000'000}};
+    MonthCheck check(plan, 100.0, kPeriod_ns);
+    const auto take = [&](const char* channel, const auto& message) {
+      std::vector<char> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+      message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+      check.take(channel, bytes.data(), static_cast<int>(bytes.size()));
+    };
+    std::int64_t seq = 0;
+    std::int64_t alarms = 0;
+    for (std::int64_t tick = 0; tick <= 20'000; ++tick) {
+      if (tick >= 200 && tick < 203) continue;  // due at 1 s, awake 14 ms later
+      spoolwatch::sample_t s{};
+      s.seq = seq++;
+      s.tick = tick;
+      s.gap = tick == 203 ? 3 : 0;
+      s.t_read_ns = s.mono_ns = tick * kPeriod_ns;
+      s.utc_us = 1'700'000'000'000'000 + s.mono_ns / 1000 - (tick >= 400 ? 5'000'000 : 0);
+      s.quality = tick >= 2000 && tick < 2400 ? 3 : 0;
+      if (sample(s)) take("SPOOLWATCH_SAMPLE", s);
+      const std::pair<std::int64_t, const char*> comings[] = {
+          {210, "lost_periods"}, {2010, "missing"}, {4200, "disk_full"}, {19'000, "jump"}};
+      for (const auto& [at, name] : comings) {
+        if (at != tick) continue;
+        spoolwatch::alarm_t a{};
+        a.seq = alarms;
+        a.mono_ns = s.mono_ns;
+        a.source = at == 4200 ? "recorder" : "loop";
+        a.name = name;
+        a.active = 1;
+        if (!alarm(a)) continue;
+        take("SPOOLWATCH_ALARM", a);
+        ++alarms;
+      }
+    }
+    spoolwatch::health_t h{};
+    h.ticks = seq;
+    h.skipped_periods = 3;
+    h.overruns = 1;
+    h.lost_records = 11;
+    health(h);
+    take("SPOOLWATCH_HEALTH", h);
+    check.finish(report);
+    return check.problems();
+  }
+};
+
+TEST(MonthCheck, FindsEachThingThatIsNotAccountedFor) {
+  Month good;
+  good.report["unlogged"] = 11;
+  EXPECT_THAT(good.problems(), IsEmpty());
+  const auto with = [&](auto mutate) {
+    Month month = good;
+    mutate(month);
+    return month.problems();
+  };
+  EXPECT_THAT(with([](Month& m) { m.report["unlogged"] = 10; }),
+              Contains(HasSubstr("daemon's last line: 11 and 10")));
+  EXPECT_THAT(with([](Month& m) { m.health = [](auto& h) { h.lost_records = 10; }; }),
+              Contains(HasSubstr("lost records of health: 11 and 10")));
+  EXPECT_THAT(with([](Month& m) { m.report["SPOOLWATCH_SAMPLE"] = 19'980; }),
+              Contains(HasSubstr("not in the log")));
+  EXPECT_THAT(with([](Month& m) { m.report["partial"] = 1; }),
+              Contains(HasSubstr("end within a message")));
+  EXPECT_THAT(with([](Month& m) { m.sample = [](auto& s) { return s.tick != 7000; }; }),
+              Contains(HasSubstr("a sequence number is missing")));
+  const auto sample = [&](std::int64_t tick, auto change) {
+    return with([&](Month& m) {
+      m.sample = [=](auto& s) {
+        if (s.tick == tick) change(s);
+        return true;
+      };
+    });
+  };
+  EXPECT_THAT(sample(203, [](auto& s) { s.gap = 0; }), Contains(HasSubstr("another gap")));
+  EXPECT_THAT(sample(500, [](auto& s) { s.t_read_ns += 10; }), Contains(HasSubstr("grid")));
+  EXPECT_THAT(sample(500, [](auto& s) { s.utc_us += 1; }), Contains(HasSubstr("wall clock")));
+  EXPECT_THAT(sample(2100, [](auto& s) { s.quality = 0; }), Contains(HasSubstr("quality")));
+  EXPECT_THAT(sample(2500, [](auto& s) { s.quality = 3; }), Contains(HasSubstr("quality")));
+  for (const char* name : {"missing", "disk_full"}) {
+    EXPECT_THAT(with([&](Month& m) {
+                  m.alarm = [name](auto& a) { return a.name != name && a.name != "jump"; };
+                  m.report["SPOOLWATCH_ALARM"] = 2;
+                }),
+                Contains(HasSubstr("no alarm")))
+        << name;
+  }
+  EXPECT_THAT(with([](Month& m) { m.alarm = [](auto&) { return true; }; }),
+              Contains(HasSubstr("loop.jump without a fault")));
+  EXPECT_THAT(with([](Month& m) { m.health = [](auto& h) { h.overruns = 0; }; }),
+              Contains(HasSubstr("number of overruns")));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "tests/soak/week.h"
 
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "tests/daemon/program/subprocess.h"
 #include "tests/soak/event_pipe.h"
 #include "tests/soak/fault_plan.h"
+#include "tests/soak/process.h"
 #include "tests/soak/stream_check.h"
 
 namespace soak {
@@ -31,24 +31,6 @@ constexpr double kProgress_s = 10.0;       // of real time
 constexpr std::int64_t kGrowth_KiB = 256;  // allowed after the first hour
 constexpr std::int64_t kFileBytes = 4 << 20;
 constexpr std::int64_t kFiles = 4;
-
-/// A process's memory in RAM, from /proc.
-std::int64_t resident_KiB(pid_t pid) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/status");
-  for (std::string word; in >> word;) {
-    if (word != "VmRSS:") continue;
-    std::int64_t size_KiB = 0;
-    in >> size_KiB;
-    return size_KiB;
-  }
-  return 0;
-}
-
-bool runs(pid_t pid) {
-  siginfo_t info{};
-  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-         info.si_pid == 0;
-}
 
 /// The complaint about the recorder's folder; empty: none. One file more is there for the
 /// moment between the new one and the oldest's removal.
