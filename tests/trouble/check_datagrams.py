@@ -6,7 +6,9 @@
 Each listener must outlive them and still take a good message afterwards.
 """
 import argparse
+import os
 import pathlib
+import pty
 import random
 import signal
 import socket
@@ -14,7 +16,11 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "workbench/serve"))
+from server_process import NoPage, Server  # noqa: E402
 
 GROUP, PORT = "239.255.76.67", 7699
 URL = f"udpm://{GROUP}:{PORT}?ttl=0"
@@ -59,6 +65,43 @@ def good_packets(programs, config):
             stop(daemon)
 
 
+def read_away(file):
+    """Takes what a terminal shows or a page is sent; a reader that stops is not what is tried here."""
+    def take():
+        try:
+            while os.read(file, 65536):
+                pass
+        except OSError:
+            pass
+    threading.Thread(target=take, daemon=True).start()
+
+
+def live_view(program):
+    """`listen --live` in a terminal."""
+    shown, terminal = pty.openpty()
+    process = subprocess.Popen([program, "listen", "--live", "--lcm-url", URL], stdin=terminal,
+                               stdout=terminal, stderr=subprocess.PIPE, env={**os.environ, "TERM": "xterm"})
+    os.close(terminal)
+    read_away(shown)
+    return process
+
+
+class LivePage:
+    """`serve` with a page that watches the stand."""
+
+    def __init__(self, program, folder):
+        self.server = Server(program, folder, "--lcm-url", URL).log_in()
+        self.events = socket.create_connection(("127.0.0.1", self.server.port))
+        self.events.sendall(f"GET /api/events?live HTTP/1.1\r\nHost: 127.0.0.1:{self.server.port}\r\n"
+                            f"Cookie: {self.server.cookie}\r\n\r\n".encode())
+        self.received = 0
+        threading.Thread(target=self.take, daemon=True).start()
+
+    def take(self):
+        while part := self.events.recv(65536):
+            self.received += len(part)
+
+
 def start_daemon(programs, config):
     command = [str(programs / "spoolwatchd"), "--config", str(config), "--lcm-url", URL]
     for table in ("control.socket", "alarms.folder", "evidence.folder", "recorder.folder"):
@@ -94,6 +137,13 @@ def main():
         running = {name: subprocess.Popen(command, stdout=subprocess.DEVNULL,
                                           stderr=subprocess.PIPE)
                    for name, command in listeners.items()}
+        running["listen --live"] = live_view(program)
+        page = None
+        try:
+            page = LivePage(program, f"{folder}/session")
+            running["serve"] = page.server.process
+        except NoPage as why:
+            print(f"serve: {why}")
         time.sleep(1.0)
         daemon = start_daemon(options.programs, options.config)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
@@ -112,6 +162,11 @@ def main():
                 if i % 50 == 0:
                     time.sleep(0.005)
         time.sleep(1.5)
+        if page:
+            before = page.received
+            time.sleep(2.0)
+            if page.received == before:
+                failed.append("serve: the page gets nothing more")
         for name, process in running.items():
             if name == "record" and process.poll() == 0:
                 # A flipped bit of run_id looks like another daemon, which ends a record in order.
@@ -119,7 +174,7 @@ def main():
                 continue
             if process.poll() is not None:
                 failed.append(f"{name}: ended with {process.returncode}: "
-                              f"{process.stderr.read().decode()[-300:]}")
+                              f"{str(process.stderr.read())[-300:]}")
                 continue
             rss = [int(line.split()[1]) for line in open(f"/proc/{process.pid}/status")
                    if line.startswith("VmRSS")][0]

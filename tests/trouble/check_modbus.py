@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
 """A misbehaving Modbus device: what it does to the valve.
 
-  check_modbus.py PROGRAMS CONFIG_FOLDER [--only TEXT]
+  check_modbus.py PROGRAMS CONFIG_FOLDER [--line tcp|rtu] [--only TEXT]
 
 The shipped daemon drives the bench rig (spoolwatch-rig) through a proxy that spoils replies in some sixty
-ways, once and for half a second, while the rig moves. Whatever happens: the first command on every new
-connection is null, a latched daemon moves nothing, it says why it latched, and it comes back.
+ways, once and for half a second, while the rig moves; on a serial line (a pseudo-terminal) in those of them
+that there are. Whatever happens: the first command on every new connection is null, a latched daemon moves
+nothing, it says why it latched, and it comes back.
 """
 import argparse
-import json
+import os
 import pathlib
 import random
-import select
 import socket
 import struct
 import sys
+import tempfile
 import threading
 import time
+import tty
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from stand import BenchRig, Daemon  # noqa: E402
@@ -153,29 +155,108 @@ ON_ACCEPT = {  # what a new connection finds
 }
 
 
-class Proxy:
+# What a serial line has not: transactions and connections.
+ON_TCP_ALONE = ("of the next transaction", "of transaction 0", "of another protocol", "length", "closes", "resets")
+# Of the bytes on the line; the others are of what they say, and get the check that belongs to it.
+OF_BYTES = ("1 ms", "3 ms", "8 ms", "20 ms", "60 ms", "200 ms", "slow", "lost", "cut", "twice", "trailing", "garbage")
+
+
+def check_sum(frame):
+    """Of a frame on a serial line."""
+    crc = 0xFFFF
+    for byte in frame:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0xA001 if crc & 1 else 0)
+    return struct.pack("<H", crc)
+
+
+def on_the_line(frame):
+    """A frame of TCP as one of a serial line."""
+    return frame[6:] + check_sum(frame[6:])
+
+
+def of_line(name, spoil):
+    """A trouble as it is on a serial line: (request of TCP, reply of TCP) -> parts."""
+    if name.startswith(OF_BYTES):
+        return lambda request, reply: spoil(request, on_the_line(reply))
+    return lambda request, reply: [(ms, on_the_line(part)) for ms, part in spoil(request, reply)]
+
+
+ON_RTU = {name: of_line(name, spoil) for name, spoil in TROUBLES.items() if not name.startswith(ON_TCP_ALONE)}
+ON_RTU["wrong check"] = lambda request, reply: [(0, on_the_line(reply)[:-1] + bytes([on_the_line(reply)[-1] ^ 1]))]
+
+
+class Troubled:
+    """Spoils replies of the rig while it is asked to, and notes the commands that pass."""
+
     def __init__(self, rig_port):
         self.rig_port = rig_port
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.port = self.listener.getsockname()[1]
         self.spoil, self.left, self.on_accept = whole, 0, None
         self.deaf = False
         self.first_commands, self.commands, self.first_spoilt = [], [], None
-        threading.Thread(target=self.accept, daemon=True).start()
+        threading.Thread(target=self.work, daemon=True).start()
 
     def begin(self, spoil, count):
         self.first_spoilt = None
         self.spoil, self.left = spoil, count
 
-    def accept(self):
+    def note(self, request, first):
+        """Whether a command is still to come first."""
+        if request[7] not in WRITES or struct.unpack(">H", request[8:10])[0] != COMMAND:
+            return first
+        volts = struct.unpack(">f", request[13:17])[0]
+        self.commands.append((time.monotonic(), volts))
+        if first:
+            self.first_commands.append(volts)
+        return False
+
+    def parts_of(self, request, reply, untouched):
+        if self.left == 0:
+            return untouched
+        parts = self.spoil(request, reply)
+        if parts != untouched:
+            self.left -= 1
+            self.first_spoilt = self.first_spoilt or time.monotonic()
+        return parts
+
+    def connect(self):
+        rig = socket.create_connection(("127.0.0.1", self.rig_port))
+        rig.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return rig
+
+    @staticmethod
+    def send(parts, write):
+        for ms, data in parts:
+            if ms:
+                time.sleep(ms * 1e-3)
+            write(data)
+
+    @staticmethod
+    def frame(file):
+        data = b""
+        while len(data) < 6 or len(data) < 6 + struct.unpack(">H", data[4:6])[0]:
+            part = file.recv(512)
+            if not part:
+                raise ConnectionError
+            data += part
+        return data
+
+
+class Proxy(Troubled):
+    def __init__(self, rig_port):
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        super().__init__(rig_port)
+
+    def work(self):
         while True:
             client, _ = self.listener.accept()
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             threading.Thread(target=self.serve, args=(client,), daemon=True).start()
 
     def serve(self, client):
-        rig = socket.create_connection(("127.0.0.1", self.rig_port))
-        rig.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        rig = self.connect()
         first = True
         try:
             if self.on_accept:
@@ -184,24 +265,10 @@ class Proxy:
                 while self.deaf:
                     time.sleep(0.005)
                 request = self.frame(client)
-                if request[7] in WRITES and struct.unpack(">H", request[8:10])[0] == COMMAND:
-                    volts = struct.unpack(">f", request[13:17])[0]
-                    self.commands.append((time.monotonic(), volts))
-                    if first:
-                        self.first_commands.append(volts)
-                    first = False
+                first = self.note(request, first)
                 rig.sendall(request)
                 reply = self.frame(rig)
-                parts = [(0, reply)]
-                if self.left != 0:
-                    parts = self.spoil(request, reply)
-                    if parts != [(0, reply)]:
-                        self.left -= 1
-                        self.first_spoilt = self.first_spoilt or time.monotonic()
-                for ms, data in parts:
-                    if ms:
-                        time.sleep(ms * 1e-3)
-                    client.sendall(data)
+                self.send(self.parts_of(request, reply, [(0, reply)]), client.sendall)
         except Close as end:
             self.left -= 1
             self.first_spoilt = self.first_spoilt or time.monotonic()
@@ -213,15 +280,51 @@ class Proxy:
             client.close()
             rig.close()
 
-    @staticmethod
-    def frame(file):
+
+class SerialProxy(Troubled):
+    """The rig at the end of a serial line: a pseudo-terminal in place of the wire."""
+
+    def __init__(self, rig_port):
+        self.line, self.own_end = os.openpty()  # the own end keeps it open between two owners
+        tty.setraw(self.own_end)
+        self.name = os.ttyname(self.own_end)
+        super().__init__(rig_port)
+
+    def work(self):
+        rig = self.connect()
+        while True:
+            request = self.request()
+            while self.deaf:
+                time.sleep(0.005)
+            self.note(request, False)
+            rig.sendall(request)
+            reply = self.frame(rig)
+            self.send(self.parts_of(request, reply, [(0, on_the_line(reply))]),
+                      lambda data: os.write(self.line, data))
+
+    def request(self):
+        """The next one with a right check, as a frame of TCP."""
         data = b""
-        while len(data) < 6 or len(data) < 6 + struct.unpack(">H", data[4:6])[0]:
-            part = file.recv(512)
-            if not part:
-                raise ConnectionError
-            data += part
-        return data
+        while True:
+            data += os.read(self.line, 256)
+            size = 8 if len(data) < 7 or data[1] != 16 else 9 + data[6]
+            if len(data) < size:
+                continue
+            if check_sum(data[:size - 2]) == data[size - 2:size]:
+                return struct.pack(">HHH", 1, 0, size - 2) + data[:size - 2]
+            data = data[1:]  # begins anew with the next byte
+
+
+def bench_config(folder, shipped, proxy, more=""):
+    """bench_modbus.toml on that proxy, and with more tables; in the folder."""
+    text = (shipped / "bench_modbus.toml").read_text()
+    place = (f'address = "127.0.0.1:{proxy.port}"' if isinstance(proxy, Proxy)
+             else f'serial = "{proxy.name}"\nbaud = 115200\nparity = "none"')
+    changed = text.replace('address = "127.0.0.1:1502"', place)
+    assert changed != text
+    file = pathlib.Path(folder, "bench.toml")
+    file.write_text(changed + more)
+    return file
 
 
 def eventually(condition, timeout_s=10.0):
@@ -284,19 +387,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("config", type=pathlib.Path)
+    parser.add_argument("--line", choices=("tcp", "rtu"), default="tcp")
     parser.add_argument("--only", default="")
     options = parser.parse_args()
-    with BenchRig(options.programs, options.config) as rig:
-        proxy = Proxy(rig.port)
-        settings = [f"modbus.address=127.0.0.1:{proxy.port}", "modbus.timeout_s=0.03",
+    on_tcp = options.line == "tcp"
+    with BenchRig(options.programs, options.config) as rig, tempfile.TemporaryDirectory() as folder:
+        proxy = Proxy(rig.port) if on_tcp else SerialProxy(rig.port)
+        troubles = TROUBLES if on_tcp else ON_RTU
+        config = bench_config(folder, options.config, proxy)
+        settings = ["modbus.timeout_s=0.03",
                     "modbus.watchdog_s=0.3", "modbus.longest_pause_s=0.1", "modbus.read_ahead_s=0",
                     "loop.rate_hz=50", "loop.max_lost_a_minute=1000", "loop.max_lost_in_a_row=50",
                     "reference.amplitude_m=0.05", "loop.overrun_action=count"]
-        with Daemon(options.programs, options.config / "bench_modbus.toml", settings) as daemon:
+        with Daemon(options.programs, config, settings) as daemon:
             bench = Bench(daemon, proxy)
             memory_kB = daemon.memory_kB()
             tried = 0
-            for name, spoil in TROUBLES.items():
+            for name, spoil in troubles.items():
                 for how, count in (("once", 1), ("half a second", -1)):
                     label = f"{name}, {how}"
                     if options.only not in label:
@@ -304,7 +411,7 @@ def main():
                     bench.trouble(label, lambda: proxy.begin(spoil, count),
                                   lambda: proxy.begin(whole, 0))
                     tried += 1
-            for name, meet in ON_ACCEPT.items():
+            for name, meet in (ON_ACCEPT.items() if on_tcp else ()):
                 if options.only not in name:
                     continue
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The time to null under each trouble of the misbehaving Modbus device, against what --check states.
 
-  measure_null.py PROGRAMS CONFIG_FOLDER [--only TEXT] [--runs N]
+  measure_null.py PROGRAMS CONFIG_FOLDER [--line tcp|rtu] [--action latch|ramp] [--only TEXT] [--runs N]
 
 The device of check_modbus.py spoils every reply from a moment on at which the valve is far from null. A
 client of its own watches the rig's valve. Prints a line per trouble: row of --check, stated time, the longest
@@ -15,11 +15,13 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from check_modbus import TROUBLES, Bench, Proxy, eventually, whole  # noqa: E402
+from check_modbus import (ON_RTU, TROUBLES, Bench, Proxy, SerialProxy, bench_config,  # noqa: E402
+                          eventually, whole)
 from stand import BenchRig, Daemon  # noqa: E402
 
 NULL_V = 0.01  # two steps of the converter
@@ -27,6 +29,24 @@ FAR_V = 2.0
 WATCHED_S = 0.5
 # Replies within their 16 ms, mostly: nothing asks for null, and the command passes through it by itself.
 IN_TIME = ("1 ms late", "3 ms late", "8 ms late", "slow, 0.2 ms a byte")
+# On a serial line what follows a whole reply is thrown away before the next request.
+IN_TIME_ON_RTU = (*IN_TIME, "twice", "trailing byte")
+# With a ramp: of the guards whose action may be one, those that a troubled bus trips.
+GUARDS = """
+[safety]
+ramp_s = 0.1
+[[guard]]
+kind = "e_stop"
+action = "{0}"
+[[guard]]
+kind = "jump"
+limit_m = 0.02
+action = "{0}"
+[[guard]]
+kind = "stale"
+age_s = 0.1
+action = "{0}"
+"""
 SETTINGS = ["loop.rate_hz=50", "modbus.watchdog_s=0.15", "modbus.timeout_s=0.016",
             "modbus.longest_pause_s=0.1",
             "modbus.read_ahead_s=0", "loop.max_lost_a_minute=1000", "loop.max_lost_in_a_row=50",
@@ -96,15 +116,17 @@ def stated(programs, config, settings):
 
 
 class Measurement:
-    def __init__(self, daemon, proxy, watcher, rows):
+    def __init__(self, daemon, proxy, watcher, rows, in_time):
         self.daemon, self.proxy, self.watcher, self.rows = daemon, proxy, watcher, rows
+        self.in_time = in_time
         self.bench = Bench(daemon, proxy)
         self.failures = []
 
     def once(self, name, spoil):
         """(more than, less than, state) or None."""
         if not eventually(self.bench.runs, 40.0) or not eventually(self.watcher.moves_out, 40.0):
-            self.failures.append(f"{name}: does not move before")
+            self.failures.append(f"{name}: does not move before: {self.daemon.ask('status')['state']}, "
+                                 f"valve at {self.watcher.looks[-1][2]:.2f} V")
             return None
         self.proxy.begin(spoil, -1)
         time.sleep(WATCHED_S + 0.1)
@@ -124,7 +146,7 @@ class Measurement:
             return
         never = [one for one in seen if one[1] is None]
         state = ", ".join(sorted({one[2] for one in seen}))
-        if name in IN_TIME:
+        if name in self.in_time:
             print(f"{name} | - | - | - | {state}", flush=True)
             return
         if never:
@@ -143,18 +165,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("config", type=pathlib.Path)
+    parser.add_argument("--line", choices=("tcp", "rtu"), default="tcp")
+    parser.add_argument("--action", choices=("latch", "ramp"), default="latch")
     parser.add_argument("--only", default="")
     parser.add_argument("--runs", type=int, default=3)
     options = parser.parse_args()
-    with BenchRig(options.programs, options.config) as rig:
-        proxy, watcher = Proxy(rig.port), Watcher(rig.port)
-        config = options.config / "bench_modbus.toml"
-        settings = [f"modbus.address=127.0.0.1:{proxy.port}", *SETTINGS]
-        rows = stated(options.programs, config, settings)
+    with BenchRig(options.programs, options.config) as rig, tempfile.TemporaryDirectory() as folder:
+        on_tcp = options.line == "tcp"
+        proxy, watcher = (Proxy if on_tcp else SerialProxy)(rig.port), Watcher(rig.port)
+        config = bench_config(folder, options.config, proxy, GUARDS.format(options.action))
+        rows = stated(options.programs, config, SETTINGS)
         proxy.commands.clear()
-        with Daemon(options.programs, config, settings) as daemon:
-            measurement = Measurement(daemon, proxy, watcher, rows)
-            for name, spoil in TROUBLES.items():
+        with Daemon(options.programs, config, SETTINGS) as daemon:
+            measurement = Measurement(daemon, proxy, watcher, rows, IN_TIME if on_tcp else IN_TIME_ON_RTU)
+            for name, spoil in (TROUBLES if on_tcp else ON_RTU).items():
                 if options.only in name:
                     measurement.measure(name, spoil, options.runs)
     print(*measurement.failures, sep="\n", file=sys.stderr)

@@ -11,9 +11,12 @@ import time
 
 
 class Daemon:
-    """spoolwatchd with a configuration of config/; ends with the `with` block."""
+    """spoolwatchd with a configuration of config/; ends with the `with` block.
 
-    def __init__(self, programs, config, settings=(), files=(), lcm_url=""):
+    keep: of "recorder" and "evidence" those that it writes to, in its own folder.
+    """
+
+    def __init__(self, programs, config, settings=(), lcm_url="", keep=()):
         self.programs = pathlib.Path(programs)
         self.folder = tempfile.TemporaryDirectory(prefix="spoolwatch-trouble-")
         os.chmod(self.folder.name, 0o755)
@@ -22,7 +25,8 @@ class Daemon:
         self.log = place / "log.txt"
         command = [str(self.programs / "spoolwatchd"), "--config", str(config), "--lcm-url", lcm_url]
         for setting in (f"control.socket={self.socket}", f"alarms.folder={place}/alarms",
-                        "evidence.folder=", "recorder.folder=", *settings):
+                        *(f"{what}.folder={place / what if what in keep else ''}"
+                          for what in ("evidence", "recorder")), *settings):
             command += ["--set", setting]
         self.process = subprocess.Popen(command, stderr=open(self.log, "w"),
                                         stdout=subprocess.DEVNULL)
@@ -40,10 +44,13 @@ class Daemon:
         raise RuntimeError("the daemon does not answer")
 
     def __exit__(self, *_):
+        self.end()
+        self.folder.cleanup()
+
+    def end(self):
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
             self.process.wait(timeout=20)
-        self.folder.cleanup()
 
     def ask(self, command, timeout_s=5.0, **more):
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as one:
