@@ -28,7 +28,7 @@ class LogReader {
   explicit LogReader(const std::string& file);
 
   /// The next event, valid until the next call; null at the end, and at an event that is not
-  /// complete or not one.
+  /// complete or not one. Throws schema::DataError when the file cannot be read on.
   const LogEvent* next();
   /// The newest of them.
   [[nodiscard]] const LogEvent& event() const noexcept { return event_; }
@@ -46,6 +46,8 @@ class LogReader {
   [[nodiscard]] bool at_end() const noexcept { return complete_ >= size_; }
 
  private:
+  bool read_event();
+
   std::string file_;
   std::ifstream in_;
   std::int64_t size_ = 0;

@@ -4,11 +4,14 @@
 
 #include <cctype>
 #include <charconv>
-#include <fstream>
+#include <filesystem>
 #include <set>
+#include <sstream>
+#include <system_error>
 
 #include "config/record/text_fields.h"
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 
 namespace config::record {
 namespace {
@@ -74,12 +77,18 @@ std::vector<MapEntry> parse_map(const std::string& map) {
   if (key_length(map) > 0) {
     append_pairs(map, "--map", pairs);
   } else {
-    std::ifstream file(map);
-    if (!file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(map, ignored)) {
       throw UsageError("--map " + map +
                        ": is no pair and no file; allowed: t=COLUMN,u=COLUMN,y=COLUMN, or a file "
                        "with such pairs, one per line");
     }
+    const schema::FileContent content = schema::read_file(map, schema::kMostConfigurationBytes);
+    if (!content.wrong.empty()) {
+      throw schema::bad_config(map, "cannot be read (" + content.wrong + ")",
+                               "t = Time [s], one per line");
+    }
+    std::istringstream file(content.text);
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
       const std::string_view text = trimmed(line);

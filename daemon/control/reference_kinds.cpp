@@ -2,10 +2,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
+#include <sstream>
 
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 #include "daemon/control/reference_kinds.h"
 
 namespace monitor::control {
@@ -160,11 +161,15 @@ bool parse_row(const std::string& line, double& t_s, double& r_m) noexcept {
 
 FileReference::FileReference(const std::filesystem::path& file) {
   using config::schema::bad_config;
-  std::ifstream in(file);
-  std::string line;
-  if (!in || !std::getline(in, line)) {
-    throw bad_config(file.string(), "cannot be read", std::string("a CSV file with ") + kHeader);
+  const config::schema::FileContent content =
+      config::schema::read_file(file, config::schema::kMostConfigurationBytes);
+  if (!content.wrong.empty()) {
+    throw bad_config(file.string(), "cannot be read (" + content.wrong + ")",
+                     std::string("a CSV file with ") + kHeader);
   }
+  std::istringstream in(content.text);
+  std::string line;
+  std::getline(in, line);
   if (!line.empty() && line.back() == '\r') line.pop_back();
   if (line != kHeader) throw bad_config(file.string() + ":1", "is \"" + line + "\"", kHeader);
   for (int number = 2; std::getline(in, line); ++number) {

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace monitor::io {
@@ -128,18 +129,24 @@ void EventLog::leave_removed() noexcept {
 }
 
 void EventLog::remove_oldest() const {
-  using Entry = std::pair<std::filesystem::file_time_type, std::filesystem::path>;
+  // Logs of other runs by their time; then those of this run by their number, so that a wall clock
+  // that was set back does not make the newest ones the oldest.
+  using Entry = std::tuple<bool, std::filesystem::file_time_type, std::filesystem::path>;
   std::vector<Entry> logs;
   std::error_code error;
+  const std::string own = "spoolwatch-" + std::to_string(run_id_) + "-";
   for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
-    if (is_log(entry.path()) && entry.path() != file_) {
-      logs.emplace_back(entry.last_write_time(error), entry.path());
-    }
+    if (!is_log(entry.path()) || entry.path() == file_) continue;
+    const bool is_own = entry.path().filename().string().starts_with(own);
+    logs.emplace_back(is_own,
+                      is_own ? std::filesystem::file_time_type() : entry.last_write_time(error),
+                      entry.path());
   }
   std::sort(logs.begin(), logs.end());
   const auto surplus = static_cast<std::int64_t>(logs.size()) + 1 - files_;
   for (std::int64_t i = 0; i < surplus; ++i) {
-    std::filesystem::remove(logs[static_cast<std::size_t>(i)].second, error);
+    std::filesystem::remove(std::get<std::filesystem::path>(logs[static_cast<std::size_t>(i)]),
+                            error);
   }
 }
 

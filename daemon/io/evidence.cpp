@@ -49,7 +49,8 @@ Evidence::Evidence(const EvidenceConfig& config, EvidenceFacts facts, bool backg
     throw config::schema::bad_config(config.folder,
                                      "cannot keep evidence here: " + error.message());
   }
-  prune_packs(config.folder, config.packs, config.total_bytes);
+  OwnPacks none;
+  prune_packs(config.folder, config.packs, config.total_bytes, none);
   ring_ = std::make_unique<EvidenceRing>(config, std::move(facts));
   if (background_) thread_.start([this] { drain(); });
 }

@@ -36,7 +36,9 @@ class SyncedFile {
   }
   /// 0 or the first errno.
   [[nodiscard]] int close() noexcept {
-    if (file_ != nullptr && std::fclose(file_) != 0 && error_ == 0) error_ = errno;
+    if (file_ == nullptr) return error_;
+    if (error_ == 0 && (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0)) error_ = errno;
+    if (std::fclose(file_) != 0 && error_ == 0) error_ = errno;
     file_ = nullptr;
     return error_;
   }
@@ -153,7 +155,8 @@ std::int64_t bytes_in(const fs::path& folder) {
 
 }  // namespace
 
-int write_pack(const fs::path& folder, const EvidenceFacts& facts, const PackContents& contents) {
+int write_pack(const fs::path& folder, const EvidenceFacts& facts, const PackContents& contents,
+               OwnPacks& own) {
   const std::string name = folder_name(contents.trigger);
   const fs::path partial = folder / (kPartial + name);
   std::error_code error;
@@ -169,10 +172,11 @@ int write_pack(const fs::path& folder, const EvidenceFacts& facts, const PackCon
     failed = error.value();
   }
   if (failed != 0) fs::remove_all(partial, error);
+  if (failed == 0) own.push_back(final_name);
   return failed;
 }
 
-void prune_packs(const fs::path& folder, std::int64_t packs, std::int64_t bytes) {
+void prune_packs(const fs::path& folder, std::int64_t packs, std::int64_t bytes, OwnPacks& own) {
   std::vector<fs::path> found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -180,7 +184,14 @@ void prune_packs(const fs::path& folder, std::int64_t packs, std::int64_t bytes)
     if (name.starts_with(kPartial)) fs::remove_all(entry.path(), error);
     if (name.starts_with(kName) && entry.is_directory(error)) found.push_back(entry.path());
   }
-  std::sort(found.begin(), found.end());
+  // Those of other runs by their names, which begin with their time.
+  const auto position = [&](const fs::path& pack) {
+    const auto at = std::find(own.begin(), own.end(), pack);
+    return at == own.end() ? std::ptrdiff_t{-1} : at - own.begin();
+  };
+  std::sort(found.begin(), found.end(), [&](const fs::path& a, const fs::path& b) {
+    return std::pair(position(a), a) < std::pair(position(b), b);
+  });
   std::int64_t total = 0;
   std::vector<std::int64_t> sizes;
   for (const fs::path& pack : found) {
@@ -191,6 +202,7 @@ void prune_packs(const fs::path& folder, std::int64_t packs, std::int64_t bytes)
   for (std::size_t i = 0; left > 1 && (left > packs || total > bytes); ++i, --left) {
     total -= sizes[i];
     fs::remove_all(found[i], error);
+    std::erase(own, found[i]);
   }
 }
 

@@ -40,11 +40,17 @@ struct PackContents {
   std::function<void(const std::function<void(std::span<std::uint8_t>)>&)> events;
 };
 
-/// 0 or errno.
-[[nodiscard]] int write_pack(const std::filesystem::path& folder, const EvidenceFacts& facts,
-                             const PackContents& contents);
+/// Folders that this process has written and that are there, the newest last: the order in which
+/// they are removed, whatever the wall clock was set to meanwhile.
+using OwnPacks = std::vector<std::filesystem::path>;
 
-/// Removes the oldest folders beyond the limits and incomplete folders of an interrupted daemon.
-void prune_packs(const std::filesystem::path& folder, std::int64_t packs, std::int64_t bytes);
+/// 0 or errno. Appends to `own`.
+[[nodiscard]] int write_pack(const std::filesystem::path& folder, const EvidenceFacts& facts,
+                             const PackContents& contents, OwnPacks& own);
+
+/// Removes the oldest folders beyond the limits, those of other runs first, and incomplete folders
+/// of an interrupted daemon.
+void prune_packs(const std::filesystem::path& folder, std::int64_t packs, std::int64_t bytes,
+                 OwnPacks& own);
 
 }  // namespace monitor::io

@@ -130,10 +130,10 @@ void EvidenceRing::write(const Pending& pending) {
       if (parts_of(record_).channel != kStateChannel) each(record_);
     }
   };
-  const int error = write_pack(config_.folder, facts_, contents);
+  const int error = write_pack(config_.folder, facts_, contents, own_);
   error_ = error;
   ++(error == 0 ? written_ : failed_);
-  prune_packs(config_.folder, config_.packs, config_.total_bytes);
+  prune_packs(config_.folder, config_.packs, config_.total_bytes, own_);
 }
 
 EvidenceStatus EvidenceRing::status() const noexcept {

@@ -47,6 +47,7 @@ class EvidenceRing {
 
   EvidenceConfig config_;
   EvidenceFacts facts_;
+  OwnPacks own_;
   std::string sample_channel_;
   std::int64_t before_, after_;  ///< ticks
   ByteBacklog ring_;

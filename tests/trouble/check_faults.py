@@ -9,6 +9,7 @@ change nothing; a file that cannot be written leaves the one that was there, and
 import argparse
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -59,6 +60,23 @@ class Tries:
                        and file.stat().st_size == at, bad)
             file.write_bytes(whole)
 
+    def makes(self, command, file):
+        """A file that the command writes where none is: all of it or nothing."""
+        good = self.run(command)
+        self.check(f"{file.name} written", good.returncode == 0, good)
+        whole = file.read_bytes()
+        for fault in (*(f"{kind}:{file.name}:{at}" for kind in ("write_enospc", "write_eio")
+                        for at in (0, len(whole) // 2)), f"rename_eio:{file.name}:0"):
+            file.unlink()
+            bad = self.run(command, fault)
+            left = [p for p in file.parent.iterdir() if p.name.startswith(file.name)]
+            self.check(f"{file.name}: {fault}", bad.returncode == 1 and not left, bad)
+            file.touch()
+        file.unlink()
+        short = self.run(command, f"write_short:{file.name}:0")
+        self.check(f"{file.name}: seven bytes at a time",
+                   short.returncode == 0 and file.read_bytes() == whole, short)
+
     def writes(self, command, file):
         """A file that the command writes, over one that is there."""
         good = self.run(command)
@@ -73,6 +91,11 @@ class Tries:
                 self.check(f"{file.name}: {kind} at byte {at}",
                            bad.returncode == 1 and file.read_bytes() == b"what was there"
                            and not left, bad)
+        file.write_bytes(b"what was there")
+        bad = self.run(command, f"rename_eio:{file.name}:0")
+        self.check(f"{file.name}: cannot take its place",
+                   bad.returncode == 1 and file.read_bytes() == b"what was there"
+                   and not [p for p in file.parent.iterdir() if p.name.startswith(file.name) and p != file], bad)
         short = self.run(command, f"write_short:{file.name}:0")
         self.check(f"{file.name}: seven bytes at a time",
                    short.returncode == 0 and file.read_bytes() == whole, short)
@@ -114,6 +137,63 @@ def main():
         tries.writes(["spoolwatch", "export", record, "-o", folder / "out.csv"], folder / "out.csv")
         tries.writes(["spoolwatch", "simulate", thesis, "-o", folder / "sim.csv", "--duration", "5"],
                      folder / "sim.csv")
+        calibrated = folder / "models/thesis_calibrated.toml"
+        healthy = folder / "healthy.csv"
+        tries.writes(["spoolwatch", "simulate", calibrated, "-o", healthy, "--duration", "60"], healthy)
+        bands = folder / "bands.toml"
+        tries.writes(["spoolwatch", "calibrate", folder / "demo.toml", healthy, "-o", bands], bands)
+        with_bands = folder / "with_bands.toml"
+        with_bands.write_text((folder / "demo.toml").read_text().replace(
+            "schema_version = 1", 'schema_version = 1\nbands_file = "bands.toml"', 1))
+        tries.reads(["spoolwatchd", "--config", with_bands, "--lcm-url", "", *settings, "--check"], bands, 78)
+        learned = folder / "learned.toml"
+        tries.writes(["spoolwatch", "isolate", calibrated, healthy, "--learn", learned], learned)
+        with_healthy = folder / "with_healthy.toml"
+        with_healthy.write_text((folder / "thesis_case3_named.toml").read_text().replace(
+            "learn_s = 8.0", 'healthy = "learned.toml" #', 1))
+        tries.reads(["spoolwatchd", "--config", with_healthy, "--lcm-url", "", *settings, "--check"], learned, 78)
+        trained = folder / "trained.toml"
+        tries.writes(["spoolwatch", "train", folder / "scorecard/cusum.toml", "--healthy", healthy, "-o", trained],
+                     trained)
+        mapping = folder / "columns.map"
+        tries.writes(["spoolwatch", "import", record, "--save-map", mapping], mapping)
+        tries.reads([*estimate, "--map", mapping], mapping, 78)
+        tries.writes(["spoolwatch", "import", record, "-o", folder / "clean.csv"], folder / "clean.csv")
+        tries.writes(["spoolwatch", "fit", thesis, record, "-o", folder / "fitted.toml"], folder / "fitted.toml")
+        for option, name in (("--json", "compared.json"), ("--report", "compared.html"),
+                             ("--residuals", "compared.csv")):
+            tries.writes(["spoolwatch", "compare", thesis, record, option, folder / name], folder / name)
+        log = next(logs.iterdir())
+        for name in ("out.mcap", "out.json"):
+            tries.writes(["spoolwatch", "export", log, "-o", folder / name], folder / name)
+        tries.reads(["spoolwatch", "export", log, "-o", folder / "log.csv"], log, 65)
+        tries.makes(["spoolwatch", "new", "stand", "--backend", "sim", "--model", calibrated, "--low-mm", "0",
+                     "--high-mm", "600", "--max-speed-mmps", "500", "-o", folder / "stand.toml"],
+                     folder / "stand.toml")
+        tries.makes(["spoolwatch", "new", "screw-axis", "--mass-kg", "30", "--lead-mm", "10", "--inertia-kgcm2",
+                      "2", "--torque-constant-Nm-per-A", "0.5", "--drive-A-per-V", "1", "-o",
+                      folder / "axis.toml"], folder / "axis.toml")
+        evidence = folder / "evidence"
+        alarmed = ["spoolwatchd", "--config", folder / "thesis_case1.toml", "--clock", "virtual", "--duration",
+                   "30", "--lcm-url", "", "--set", "recorder.folder=", "--set", f"evidence.folder={evidence}"]
+        made = tries.run(alarmed)
+        tries.check("evidence", made.returncode == 0, made)
+        pack = sorted(evidence.iterdir())[0]
+        for file in sorted(pack.iterdir()):
+            if file.name in ("log.lcmlog", "pack.json", "pipeline.toml", "state.bin"):
+                tries.reads(["spoolwatch", "replay", pack], file, 65)
+        # An alarm without its evidence is said; the daemon goes on.
+        for fault in ("write_enospc:/evidence/:0", "write_eio:log.lcmlog:5000", "write_enospc:pack.json:0",
+                      "sync_eio:/evidence/:0", "rename_eio:/evidence/:0"):
+            subprocess.run(["rm", "-r", evidence], check=True)
+            bad = tries.run(alarmed, fault)
+            tries.check(f"evidence: {fault}", bad.returncode == 0 and not any(evidence.iterdir()), bad)
+        setpoints = folder / "setpoints.csv"
+        setpoints.write_text("t_s,reference_m\n0,0.3\n10,0.31\n20,0.3\n")
+        with_setpoints = folder / "with_setpoints.toml"
+        with_setpoints.write_text(re.sub(r"\[reference\].*?\n\n", '[reference]\nkind = "file"\nfile = '
+                                         '"setpoints.csv"\n\n', (folder / "demo.toml").read_text(), flags=re.S))
+        tries.reads(["spoolwatchd", "--config", with_setpoints, "--lcm-url", "", *settings, "--check"], setpoints, 78)
         # The daemon goes on, and says at its end what is not in the log.
         for kind in ("write_enospc", "write_eio"):
             bad = tries.run(["spoolwatchd", "--config", folder / "thesis_case1.toml", "--clock",

@@ -3,7 +3,8 @@
  *   SPOOLWATCH_FAULT=KIND:TEXT:AT   for files whose path contains TEXT, from byte AT
  *
  * KIND: read_eio, read_short (at most seven bytes at a time), read_shrunk (the file is cut off there
- * when it has been read so far), write_enospc, write_eio, write_short.
+ * when it has been read so far), write_enospc, write_eio, write_short; sync_eio (fsync and fdatasync),
+ * rename_eio (onto such a path).
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -23,16 +24,20 @@ __attribute__((constructor)) static void begin(void) {
   if (fault == NULL || sscanf(fault, "%31[^:]:%255[^:]:%lld", kind, wanted, &at) != 3) at = -1;
 }
 
-/* Bytes until the fault, -1: none here. */
-static long long until_fault(int file, const char* which) {
-  if (at < 0 || strncmp(kind, which, strlen(which)) != 0) return -1;
+/* Whether this is the file that is wanted. */
+static int is_it(int file) {
   char link[64];
   char path[4096];
   snprintf(link, sizeof link, "/proc/self/fd/%d", file);
   const ssize_t n = readlink(link, path, sizeof path - 1);
-  if (n <= 0) return -1;
+  if (n <= 0) return 0;
   path[n] = 0;
-  if (strstr(path, wanted) == NULL) return -1;
+  return strstr(path, wanted) != NULL;
+}
+
+/* Bytes until the fault, -1: none here. */
+static long long until_fault(int file, const char* which) {
+  if (at < 0 || strncmp(kind, which, strlen(which)) != 0 || !is_it(file)) return -1;
   const off_t offset = lseek(file, 0, SEEK_CUR);
   if (offset < 0) return -1;
   return offset >= at ? 0 : at - offset;
@@ -68,6 +73,20 @@ size_t fread(void* bytes, size_t size, size_t count, FILE* stream) {
   return real(bytes, size, count, stream);
 }
 
+/* Fails at once for all that goes through a stream: the C library's own write() is out of reach. */
+size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
+  static size_t (*real)(const void*, size_t, size_t, FILE*);
+  if (real == NULL) {
+    real = (size_t(*)(const void*, size_t, size_t, FILE*))dlsym(RTLD_NEXT, "fwrite");
+  }
+  if (strcmp(kind, "write_short") != 0 && until_fault(fileno(stream), "write") >= 0 &&
+      ftell(stream) + (long)(size * count) > at) {
+    errno = strcmp(kind, "write_eio") == 0 ? EIO : ENOSPC;
+    return 0;
+  }
+  return real(bytes, size, count, stream);
+}
+
 ssize_t write(int file, const void* bytes, size_t count) {
   static ssize_t (*real)(int, const void*, size_t);
   if (real == NULL) real = (ssize_t(*)(int, const void*, size_t))dlsym(RTLD_NEXT, "write");
@@ -89,4 +108,26 @@ ssize_t writev(int file, const struct iovec* parts, int count) {
     if (parts[i].iov_len > 0) return write(file, parts[i].iov_base, parts[i].iov_len);
   }
   return 0;
+}
+
+static int synced(int file, const char* name) {
+  if (at >= 0 && strcmp(kind, "sync_eio") == 0 && is_it(file)) {
+    errno = EIO;
+    return -1;
+  }
+  int (*real)(int) = (int (*)(int))dlsym(RTLD_NEXT, name);
+  return real(file);
+}
+
+int fsync(int file) { return synced(file, "fsync"); }
+int fdatasync(int file) { return synced(file, "fdatasync"); }
+
+int rename(const char* from, const char* to) {
+  if (at >= 0 && strcmp(kind, "rename_eio") == 0 && strstr(to, wanted) != NULL) {
+    errno = EIO;
+    return -1;
+  }
+  int (*real)(const char*, const char*) =
+      (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
+  return real(from, to);
 }

@@ -9,6 +9,7 @@ measured one and the state that follows; exit code 1 where the valve was not at 
 """
 import argparse
 import collections
+import os
 import pathlib
 import re
 import socket
@@ -101,6 +102,15 @@ class Watcher:
         return None
 
 
+def be_prompt(yes):
+    """Real-time priority, where it may be had, for what this thread starts: a device is no program that waits
+    for others."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO if yes else os.SCHED_OTHER, os.sched_param(20 if yes else 0))
+    except PermissionError:
+        pass
+
+
 def stated(programs, config, settings):
     """{row: s} of --check."""
     command = [str(programs / "spoolwatchd"), "--config", str(config), "--check", "--lcm-url", ""]
@@ -170,9 +180,11 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--runs", type=int, default=3)
     options = parser.parse_args()
+    be_prompt(True)
     with BenchRig(options.programs, options.config) as rig, tempfile.TemporaryDirectory() as folder:
         on_tcp = options.line == "tcp"
         proxy, watcher = (Proxy if on_tcp else SerialProxy)(rig.port), Watcher(rig.port)
+        be_prompt(False)
         config = bench_config(folder, options.config, proxy, GUARDS.format(options.action))
         rows = stated(options.programs, config, SETTINGS)
         proxy.commands.clear()

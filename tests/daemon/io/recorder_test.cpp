@@ -121,6 +121,33 @@ TEST_F(RecorderTest, RotatesBelowTheCapAndKeepsTheNewestFiles) {
   for (std::size_t i = 1; i < numbers.size(); ++i) EXPECT_EQ(numbers[i], numbers[i - 1] + 1);
 }
 
+TEST_F(RecorderTest, KeepsItsOwnNewestLogsWhenTheWallClockWasSetBack) {
+  config_.file_bytes = 4096;
+  config_.files = 4;
+  const auto later = fs::file_time_type::clock::now() + std::chrono::hours(2);
+  for (const char* name : {"spoolwatch-3-00000.lcmlog", "spoolwatch-3-00001.lcmlog"}) {
+    std::ofstream(folder_ / name) << "of another run, before the clock was set back";
+    fs::last_write_time(folder_ / name, later);
+  }
+  Recorder recorder(config_, kRun, false);
+  int i = 0;
+  for (; logs_in(folder_).size() < 4U; ++i) record(recorder, i);
+  const fs::path second = logs_in(folder_)[1];  // of this run: written before the next
+  for (const auto& file : logs_in(folder_)) {
+    // As if the clock had been set back after the first of them.
+    if (file.filename().string().find("-3-") == std::string::npos) {
+      fs::last_write_time(file, later + std::chrono::hours(i++));
+    }
+  }
+  for (const auto end = i + 100; i < end; ++i) record(recorder, i);
+  recorder.finish();
+  const auto files = logs_in(folder_);
+  ASSERT_EQ(files.size(), 4U);
+  for (const auto& file : files) {
+    EXPECT_EQ(file.filename().string().find("-3-"), std::string::npos) << file;
+  }
+}
+
 TEST_F(RecorderTest, CountsWhatAFullQueueDropsAndWritesTheRest) {
   config_.queue_bytes = 4096;
   RecorderStatus status;
