@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <map>
 
 #include "tests/daemon/program/subprocess.h"
 #include "tests/vm/null_rig.h"
@@ -23,7 +24,8 @@ constexpr std::int64_t kOutage_ns = 47'000'000;
 
 std::string chip() { return std::getenv("SPOOLWATCH_GPIO_CHIP"); }
 
-std::string configuration() {
+/// `action`: of the guards.
+std::string configuration(const std::string& action) {
   return R"(
 schema_version = 1
 [rig]
@@ -80,22 +82,24 @@ amplitude_m = 0.02
 frequency_Hz = 1.0
 [controller]
 kp_V_per_m = 200.0
+[safety]
+ramp_s = 0.1
 [[guard]]
 kind = "frozen"
 least_m = 2e-4
 command_V = 0.5
 time_s = 0.05
-action = "latch"
-)";
+action = ")" +
+         action + "\"\n[[guard]]\nkind = \"e_stop\"\naction = \"" + action + "\"\n";
 }
 
 /// All that a failure can be caused with.
 struct Stand {
-  Stand() : e_stop(chip(), 6), enable(chip(), 7) {
+  explicit Stand(const std::string& action) : e_stop(chip(), 6), enable(chip(), 7) {
     e_stop.set(true);
     enable.set(true);
     rig = std::make_unique<vm::NullRig>(chip());
-    std::ofstream(file()) << configuration();
+    std::ofstream(file()) << configuration(action);
   }
   [[nodiscard]] std::string file() const { return (folder.path() / "rig.toml").string(); }
   [[nodiscard]] std::vector<std::string> words(const char* more) const {
@@ -112,6 +116,7 @@ struct Failure {
   const char* row;
   std::function<void(Stand&, program::Daemon&)> cause;
   bool goes_on = false;  ///< after kOutage_ns
+  const char* action = "latch";
 };
 
 std::vector<Failure> failures() {
@@ -119,7 +124,9 @@ std::vector<Failure> failures() {
           {"loop late, then back", [](Stand&, auto& d) { kill(d.pid(), SIGSTOP); }, true},
           {"enable lost", [](Stand& s, auto&) { s.enable.set(false); }},
           {"guard e_stop", [](Stand& s, auto&) { s.e_stop.set(false); }},
-          {"guard frozen", [](Stand& s, auto&) { s.rig->hold_lines(); }}};
+          {"guard frozen", [](Stand& s, auto&) { s.rig->hold_lines(); }},
+          {"guard e_stop", [](Stand& s, auto&) { s.e_stop.set(false); }, false, "ramp"},
+          {"guard frozen", [](Stand& s, auto&) { s.rig->hold_lines(); }, false, "ramp"}};
 }
 
 struct Trial {
@@ -130,7 +137,7 @@ struct Trial {
 };
 
 Trial attempt(const Failure& failure) {
-  Stand stand;
+  Stand stand(failure.action);
   program::Daemon daemon(stand.words("--duration=60"));
   Trial trial;
   EXPECT_TRUE(stand.rig->moves(kFar_V)) << failure.row << ": no motion";
@@ -142,7 +149,7 @@ Trial attempt(const Failure& failure) {
     kill(daemon.pid(), SIGCONT);
     trial.longer_s = 1e-9 * static_cast<double>(hal::monotonic_ns() - begin_ns - kOutage_ns);
   }
-  vm::sleep_until(hal::monotonic_ns() + vm::kSecond_ns / 5);
+  vm::sleep_until(hal::monotonic_ns() + vm::kSecond_ns / 2);
   trial.looks = stand.rig->looks();
   trial.measured = program::measure(trial.looks, begin_ns, begun_ns, false);
   if (const std::int64_t opened_ns = stand.rig->relay_opened_ns(); opened_ns != 0) {
@@ -154,26 +161,28 @@ Trial attempt(const Failure& failure) {
   return trial;
 }
 
-std::string table() {
-  const Stand stand;
+std::string table(const char* action = "latch") {
+  const Stand stand(action);
   const program::Result check = program::run(stand.words("--check"));
   EXPECT_EQ(check.exit_code, 0) << check.err;
   return check.out;
 }
 
 TEST(NullVm, OfEncoderAndBoardIsNeverWorseThanStated) {
-  const std::string printed = table();
-  std::printf("# %-24s %-8s %14s %16s %20s %16s\n", "failure", "valve", "stated (ms)",
-              "measured (ms)", "stated travel (mm)", "measured (mm)");
+  const std::map<std::string, std::string> tables{{"latch", table()}, {"ramp", table("ramp")}};
+  std::printf("# %-24s %-8s %-6s %14s %16s %20s %16s\n", "failure", "valve", "action",
+              "stated (ms)", "measured (ms)", "stated travel (mm)", "measured (mm)");
   for (const Failure& failure : failures()) {
+    const std::string& printed = tables.at(failure.action);
     const program::Stated row = program::stated(printed, failure.row);
     ASSERT_GT(row.time_s, 0.0) << failure.row << "\n" << printed;
     const Trial trial = attempt(failure);
     const Measured& measured = trial.measured;
     ASSERT_FALSE(std::isnan(measured.most_s)) << failure.row << ": never at null";
-    std::printf("# %-24s %-8s %14.1f %7.1f to %5.1f %20.2f %16.2f\n", failure.row, "comedi",
-                row.time_s * 1e3, measured.least_s * 1e3, measured.most_s * 1e3, row.travel_m * 1e3,
-                measured.travel_m * 1e3);
+    const bool guarded = std::string(failure.row).starts_with("guard ");
+    std::printf("# %-24s %-8s %-6s %14.1f %7.1f to %5.1f %20.2f %16.2f\n", failure.row, "comedi",
+                guarded ? failure.action : "-", row.time_s * 1e3, measured.least_s * 1e3,
+                measured.most_s * 1e3, row.travel_m * 1e3, measured.travel_m * 1e3);
     EXPECT_LE(measured.least_s, row.time_s + trial.longer_s) << failure.row;
     EXPECT_LE(measured.travel_m, row.travel_m * (1.0 + trial.longer_s / row.time_s)) << failure.row;
     const auto null_again = [](const program::Look& look) {
@@ -202,7 +211,7 @@ TEST(NullVm, OfABoardWhoseDaemonIsKilledOrStoppedIsThePermitsRelay) {
     EXPECT_TRUE(std::isnan(trial.measured.most_s)) << row << ": somebody wrote null";
     EXPECT_GT(trial.looks.back().valve_V, kFar_V - 0.5) << "the board keeps its code";
     ASSERT_GT(trial.relay_s, 0.0) << row << ": the permit goes on";
-    std::printf("# %-24s %-8s %14s %7.1f (relay of %.0f ms)\n", row, "comedi", "never",
+    std::printf("# %-24s %-8s %-6s %14s %7.1f (relay of %.0f ms)\n", row, "comedi", "-", "never",
                 trial.relay_s * 1e3, 1e-6 * static_cast<double>(vm::kRelay_ns));
     // Two steps of the rig.
     EXPECT_LT(trial.relay_s, 1e-9 * static_cast<double>(vm::kRelay_ns) + more_s + 0.002) << row;
