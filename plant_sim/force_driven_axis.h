@@ -76,6 +76,7 @@ class ForceDrivenAxis {
   void reset() {
     state = {initial.y_m, initial.v_mps};
     effects.reset();
+    effects.start([&] { return motion(state, S(0.0)); });
   }
 
   /// Call before step() after any parameter has changed, with the length of the step.
@@ -97,18 +98,24 @@ class ForceDrivenAxis {
 
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V) {
-    const S drive_N = parameters.gain_N_per_V * effects.command_V(limits::known_V(u_V));
+    const S known_V = limits::known_V(u_V);
+    const S drive_V = effects.command_V(known_V, [&] { return motion(state, known_V); });
     const S parts = divisions();
     const S part_s = S(step_s_) / parts;
     const int most = static_cast<int>(reduce_max(parts));
     for (int i = 0; i < most; ++i) {
-      integrate(drive_N, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
+      integrate(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
     }
+    effects.end_step([&] { return motion(state, drive_V); }, step_s_);
   }
 
   [[nodiscard]] S speed_mps() const { return state.v_mps; }
 
  private:
+  static formula::Motion<S> motion(const State& x, const S& u_V) {
+    return {.u_V = u_V, .y_m = x.y_m, .v_mps = x.v_mps};
+  }
+
   /// Number of parts of a step, fine enough for damping and springs.
   S divisions() const {
     const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
@@ -120,12 +127,14 @@ class ForceDrivenAxis {
     return clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
   }
 
-  void integrate(const S& drive_N, const S& step_s) {
+  void integrate(const S& drive_V, const S& step_s) {
     const S from_m = state.y_m;
+    const S drive_N = parameters.gain_N_per_V * drive_V;
     const auto rate = [&](const State& x, const S& further_N) -> State {
       const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N;
       const S force_N =
-          effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_});
+          effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_},
+                              [&] { return motion(x, drive_V); });
       return {x.v_mps, force_N * inverse_mass_};
     };
     if (effects.coupled()) {

@@ -163,6 +163,9 @@ class FourWayCylinder {
     S back_m;   ///< those that retract it: Ps to chamber o, chamber i to Pe
   };
   static S root(const S& drop_Pa);
+  formula::Motion<S> motion(const State& x) const {
+    return {drive_V_, x.y_m, x.v_mps, x.spool_m, x.in_Pa, x.out_Pa};
+  }
   [[nodiscard]] const CylinderSide<S>& in_side() const { return derived_.in; }
   [[nodiscard]] const CylinderSide<S>& out_side() const {
     return Design::kEqualSides ? derived_.in : derived_.out;
@@ -191,6 +194,7 @@ class FourWayCylinder {
   void keep_within_limits();
 
   Derived derived_;
+  S drive_V_ = 0.0;  ///< command behind the effects of the command, held through the step
 };
 
 }  // namespace plant_sim

@@ -45,7 +45,8 @@ template <bool kEffects>
 S FourWayCylinder<S, Design>::opening_m(const State& x) const {
   S opening_m = x.spool_m;
   if constexpr (kEffects) {
-    opening_m = effects.opening_m(opening_m, derived_.valve_gain_m_per_V, x.y_m);
+    opening_m =
+        effects.opening_m(opening_m, derived_.valve_gain_m_per_V, [&] { return motion(x); });
   }
   return opening_m;
 }
@@ -146,9 +147,10 @@ typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::flows(con
   }
   if (derived_.cushioned) throttle_ends<kEffects>(x, open_m, q);
   if constexpr (kEffects) {
-    const effects::Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa);
-    q.in_m3ps = effects.flow_m3ps(q.in_m3ps) - leak.in_m3ps;
-    q.out_m3ps = effects.flow_m3ps(q.out_m3ps) + leak.out_m3ps;
+    const auto at = [&] { return motion(x); };
+    const effects::Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa, at);
+    q.in_m3ps = effects.flow_m3ps(q.in_m3ps, at) - leak.in_m3ps;
+    q.out_m3ps = effects.flow_m3ps(q.out_m3ps, at) + leak.out_m3ps;
   }
   return q;
 }
@@ -177,8 +179,8 @@ typename FourWayCylinder<S, Design>::State FourWayCylinder<S, Design>::rate(
     in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
     out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);
     force_N += derived_.mass_kg * pull_mps2;
-    force_N =
-        effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s});
+    force_N = effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s},
+                                  [&] { return motion(x); });
   }
   State r;
   r.y_m = v_mps;

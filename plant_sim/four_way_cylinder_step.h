@@ -37,7 +37,9 @@ void FourWayCylinder<S, Design>::rest_pressures(State& x) const {
     x.in_Pa = S(0.5) * sum_Pa;
     x.out_Pa = x.in_Pa;
   } else {
-    const S load_N = derived_.weight_N + effects.resisting_N(x.y_m, S(0.0));
+    const S load_N = derived_.weight_N + effects.resisting_N(x.y_m, S(0.0), [&] {
+      return formula::Motion<S>{.y_m = x.y_m};
+    });
     const S in_m2 = in_side().area_m2;
     const S out_m2 = out_side().area_m2;
     x.in_Pa = clamp((out_m2 * sum_Pa + load_N) / (in_m2 + out_m2), p.return_pressure_Pa,
@@ -50,6 +52,7 @@ void FourWayCylinder<S, Design>::rest_pressures(State& x) const {
 template <class S, class Design>
 void FourWayCylinder<S, Design>::reset() {
   effects.reset();
+  drive_V_ = 0.0;
   state.y_m = initial.y_m;
   rest_pressures(state);
   const auto or_rest = [](const S& given, const S& rest) {
@@ -62,6 +65,7 @@ void FourWayCylinder<S, Design>::reset() {
            initial.spool_m,
            initial.spool_mps};
   keep_within_limits();
+  effects.start([&] { return motion(state); });
 }
 
 template <class S, class Design>
@@ -104,8 +108,9 @@ S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
                     abs(state.spool_mps) * S(derived_.step_s);
   if (!effects.any()) return spool_m;
   const S& gain = derived_.valve_gain_m_per_V;
-  const S opening_m = max(spool_m, max(abs(effects.opening_m(spool_m, gain, state.y_m)),
-                                       abs(effects.opening_m(-spool_m, gain, state.y_m))));
+  const auto at = [&] { return motion(state); };
+  const S opening_m = max(spool_m, max(abs(effects.opening_m(spool_m, gain, at)),
+                                       abs(effects.opening_m(-spool_m, gain, at))));
   return effects.laps() ? opening_m + S(2.0) * effects.underlap_m(gain) : opening_m;
 }
 
@@ -114,8 +119,8 @@ template <class S, class Design>
 S FourWayCylinder<S, Design>::fast_mps() const {
   const S v_mps = state.v_mps;
   if (!effects.any()) return abs(v_mps);
-  const S push_N =
-      effects.net_force_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s});
+  const S push_N = effects.net_force_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s},
+                                       [&] { return motion(state); });
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
 }
 
@@ -181,7 +186,9 @@ S FourWayCylinder<S, Design>::spool_reach_mps(const S& u_V) const {
 
 template <class S, class Design>
 void FourWayCylinder<S, Design>::step(const S& u_V) {
-  const S drive_V = effects.command_V(limits::known_V(u_V));
+  drive_V_ = limits::known_V(u_V);
+  drive_V_ = effects.command_V(drive_V_, [&] { return motion(state); });
+  const S drive_V = drive_V_;
   const auto whole = ordinary(drive_V);
   if (all(whole)) {
     if (effects.any()) {
@@ -189,6 +196,7 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
     } else {
       integrate<false, false>(drive_V, S(derived_.step_s));
     }
+    effects.end_step([&] { return motion(state); }, derived_.step_s);
     return;
   }
   const S parts = select(whole, S(1.0), divisions(drive_V));
@@ -197,6 +205,7 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   for (int i = 0; i < most; ++i) {
     integrate<true, true>(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
   }
+  effects.end_step([&] { return motion(state); }, derived_.step_s);
 }
 
 template <class S, class Design>

@@ -90,7 +90,7 @@ std::vector<EffectInfo> effects_of(const ModelFile& model) {
   for (const formula::FormulaEffect& declared : model.formula_effects) {
     const formula::FormulaSite* site = formula::find_formula_site(declared.site);
     const std::string result = site != nullptr ? std::string(site->result) + " = " : "";
-    EffectInfo info{declared.name, result + declared.formula, {declared.site}, false, {}};
+    EffectInfo info{declared.name, result + declared.equation(), {declared.site}, false, {}};
     for (const formula::FormulaEffect::Parameter& p : declared.parameters) {
       info.parameters.push_back(info_of(p));
     }

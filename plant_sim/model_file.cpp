@@ -9,6 +9,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/visitor.h"
+#include "plant_sim/formula/curve_effect.h"
 #include "plant_sim/hydraulics.h"
 #include "plant_sim/library.h"
 
@@ -90,14 +91,22 @@ formula::PlausibleRanges plausible(const ModelFile& model) {
   ranges.opening_m = {-opening, opening};
   ranges.flow_m3ps = {-flow_m3ps, flow_m3ps};
   ranges.pressure_Pa = {0.0, 2.0 * supply_Pa};
+  const std::vector<std::string>& sites = find_plant(model.plant)->sites;
+  const auto has = [&](const char* site) {
+    return std::find(sites.begin(), sites.end(), site) != sites.end();
+  };
+  ranges.has_opening = has("opening");
+  ranges.has_pressures = has("leakage");
   ranges.position_m =
       stroke_m > 0.0 ? formula::VariableRange{0.0, stroke_m} : formula::VariableRange{-2.0, 2.0};
   return ranges;
 }
 
 std::string table_of(const formula::FormulaEffect& effect, const std::string& file) {
-  return file + ": [formula_effects." + effect.name + "]";
+  return file + (effect.curve ? ": [curve_effects." : ": [formula_effects.") + effect.name + "]";
 }
+
+bool is_curve(const formula::FormulaEffect& effect) { return effect.curve.has_value(); }
 
 void check_declared(const ModelFile& model, const formula::FormulaEffect& effect,
                     const std::string& file) {
@@ -106,6 +115,12 @@ void check_declared(const ModelFile& model, const formula::FormulaEffect& effect
     throw config::schema::bad_config(where, "has the name of an effect of the library",
                                      "another name");
   }
+  const auto same = [&](const formula::FormulaEffect& other) { return other.name == effect.name; };
+  if (std::count_if(model.formula_effects.begin(), model.formula_effects.end(), same) > 1) {
+    throw config::schema::bad_config(where, "has the name of another effect of the file",
+                                     "another name");
+  }
+  if (effect.curve) formula::check_points(effect, where);
   check(effect, formula::compile(effect, plausible(model), where), where);
 }
 
@@ -196,17 +211,19 @@ ModelFile::ModelFile() {
 
 /// Matches `effects` with the declared ones; effects that stay keep their values.
 void ModelFile::list_effects() {
-  const std::vector<EffectInfo> all = effects_of(*this);
-  effects.resize(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::vector<NamedValue> neutral = defaults(all[i].parameters);
+  const std::vector<Effect> before = std::move(effects);
+  effects.clear();
+  for (const EffectInfo& info : effects_of(*this)) {
+    Effect entry{info.name, false, defaults(info.parameters)};
     const auto same_name = [](const NamedValue& a, const NamedValue& b) {
       return a.name == b.name;
     };
-    const bool same = effects[i].name == all[i].name &&
-                      std::equal(neutral.begin(), neutral.end(), effects[i].parameters.begin(),
-                                 effects[i].parameters.end(), same_name);
-    if (!same) effects[i] = {all[i].name, false, neutral};
+    const auto old = std::find_if(before.begin(), before.end(), [&](const Effect& one) {
+      return one.name == entry.name &&
+             std::equal(one.parameters.begin(), one.parameters.end(), entry.parameters.begin(),
+                        entry.parameters.end(), same_name);
+    });
+    effects.push_back(old == before.end() ? std::move(entry) : *old);
   }
 }
 
@@ -232,6 +249,7 @@ void ModelFile::visit(Visitor& v) {
             }
           });
   v.table("initial", [&](Visitor& t) { visit_values(t, info.initial, initial); });
+  std::vector<formula::FormulaEffect> curves = take_curves();
   std::vector<std::string> declared;
   for (const formula::FormulaEffect& effect : formula_effects) declared.push_back(effect.name);
   declared = v.names("formula_effects", declared);
@@ -242,10 +260,12 @@ void ModelFile::visit(Visitor& v) {
       t.table(declared[i].c_str(), [&](Visitor& f) { formula_effects[i].visit(f); });
     }
   });
-  list_effects();
+  visit_curves(v, std::move(curves));
   const std::vector<EffectInfo> all = effects_of(*this);
   v.table("effects", [&](Visitor& t) {
+    const std::size_t library = all.size() - formula_effects.size();
     for (std::size_t i = 0; i < effects.size(); ++i) {
+      if (i >= library && is_curve(formula_effects[i - library])) continue;
       t.optional_table(effects[i].name.c_str(), effects[i].present, [&](Visitor& e) {
         visit_values(e, all[i].parameters, effects[i].parameters);
       });
@@ -263,6 +283,47 @@ void ModelFile::visit(Visitor& v) {
   v.table("loop", [&](Visitor& t) {
     t.number({"kp_V_per_m", "gain of the proportional controller"}, loop.kp_V_per_m, {0.0, 1e6});
   });
+}
+
+/// Removes the curves from the formulas; their tables have the values of the effects that they are.
+std::vector<formula::FormulaEffect> ModelFile::take_curves() {
+  std::vector<formula::FormulaEffect> curves;
+  for (formula::FormulaEffect& effect : formula_effects) {
+    if (!is_curve(effect)) continue;
+    effect.curve->f.clear();
+    for (const Effect& entry : effects) {
+      if (entry.name != effect.name) continue;
+      for (const NamedValue& p : entry.parameters) {
+        effect.curve->f.push_back(entry.present ? p.value : 0.0);
+      }
+    }
+    curves.push_back(std::move(effect));
+  }
+  std::erase_if(formula_effects, is_curve);
+  return curves;
+}
+
+/// The tables of curves, which join the formulas; the effects that they are have their values.
+void ModelFile::visit_curves(Visitor& v, std::vector<formula::FormulaEffect> curves) {
+  std::vector<std::string> names;
+  for (const formula::FormulaEffect& curve : curves) names.push_back(curve.name);
+  names = v.names("curve_effects", names);
+  curves.resize(names.size());
+  v.table("curve_effects", [&](Visitor& t) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      curves[i].name = names[i];
+      if (!curves[i].curve) curves[i].curve.emplace();
+      t.table(names[i].c_str(), [&](Visitor& c) { curves[i].visit(c); });
+    }
+  });
+  formula_effects.insert(formula_effects.end(), curves.begin(), curves.end());
+  list_effects();
+  for (const formula::FormulaEffect& curve : curves) {
+    const std::size_t count = std::min(curve.curve->f.size(), curve.parameters.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      *value(curve.name + "." + curve.parameters[i].name) = curve.curve->f[i];
+    }
+  }
 }
 
 void ModelFile::declare(const formula::FormulaEffect& effect, const std::string& file) {

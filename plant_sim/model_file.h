@@ -15,6 +15,7 @@
 //   [effects.friction]    # presence adds the effect; absent parameters are neutral
 //   coulomb_N = 100.0
 //   [formula_effects.NAME]  # a user's own effect (formula/formula_effect.h), then one like others
+//   [curve_effects.NAME]    # the same as a table, present with its values (formula/curve_effect.h)
 //   [[change]]           # a parameter changes within a record: change.h
 //   [loop]
 //   kp_V_per_m = 100.0
@@ -54,7 +55,7 @@ struct ModelFile {
   std::vector<NamedValue> parameters;  ///< all parameters of the plant, defaults filled in
   std::vector<NamedValue> priors;      ///< in the order of `parameters`; NaN = the plant's own
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (pressures at rest)
-  std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
+  std::vector<formula::FormulaEffect> formula_effects;  ///< as declared, then the curves
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
   /// Changes of parameters during one record, in the record's time; at most one a parameter.
   std::vector<Change> changes;
@@ -83,6 +84,8 @@ struct ModelFile {
 
  private:
   void list_effects();
+  std::vector<formula::FormulaEffect> take_curves();
+  void visit_curves(config::schema::Visitor& v, std::vector<formula::FormulaEffect> curves);
 };
 
 /// The model as it is before any change.

@@ -79,7 +79,9 @@ class VelocityServo {
 
   void reset() {
     state = {initial.y_m, initial.drive_mps, S(0.0)};
+    drive_V_ = 0.0;
     effects.reset();
+    effects.start([&] { return motion(state.drive_mps, state.drive_mps); });
   }
 
   /// Call before step() after any parameter has changed, with the length of the step.
@@ -99,7 +101,9 @@ class VelocityServo {
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V) {
     const S from_m = state.y_m;
-    const S goal_mps = parameters.gain_mps_per_V * effects.command_V(limits::known_V(u_V));
+    drive_V_ = limits::known_V(u_V);
+    drive_V_ = effects.command_V(drive_V_, [&] { return motion(state.drive_mps); });
+    const S goal_mps = parameters.gain_mps_per_V * drive_V_;
     const S gap_mps = state.drive_mps - goal_mps;
     S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_.of_gap);
     S early_mps = gap_mps * early_.of_gap;
@@ -125,6 +129,7 @@ class VelocityServo {
     state.y_m = clamp(from_m + travel_m, S(-limits::kPosition_m), S(limits::kPosition_m));
     state.drive_mps = clamp(goal_mps + left_mps, S(-kDrive_mps), S(kDrive_mps));
     effects.accept(state.y_m - from_m, speed_mps());
+    effects.end_step([&] { return motion(state.drive_mps, speed_mps()); }, step_s_);
   }
 
   [[nodiscard]] S speed_mps() const { return opened(state.drive_mps); }
@@ -170,7 +175,8 @@ class VelocityServo {
   }
   /// Speed behind the valve's openings; an underlapped port's is the net one of its two edges.
   S opened(const S& drive_mps) const {
-    const S x = effects.opening_m(drive_mps, parameters.gain_mps_per_V, state.y_m);
+    const S x =
+        effects.opening_m(drive_mps, parameters.gain_mps_per_V, [&] { return motion(drive_mps); });
     if (!effects.laps()) return x;
     const S lap = effects.underlap_m(parameters.gain_mps_per_V);
     return x + clamp(x, -lap, lap);
@@ -178,8 +184,17 @@ class VelocityServo {
   /// Contribution of the effects to a linear valve.
   S bent(const S& drive_mps) const { return opened(drive_mps) - drive_mps; }
 
+  formula::Motion<S> motion(const S& drive_mps, const S& v_mps) const {
+    return {.u_V = drive_V_, .y_m = state.y_m, .v_mps = v_mps, .x_m = drive_mps};
+  }
+  /// The opening decides the speed: formulas see that of the last step.
+  formula::Motion<S> motion(const S& drive_mps) const {
+    return motion(drive_mps, effects.held_speed_mps());
+  }
+
   double step_s_ = 0.0;
   bool second_order_ = false;  ///< in any lane
+  S drive_V_ = 0.0;            ///< held through the step
   Response early_, late_, whole_;
 };
 

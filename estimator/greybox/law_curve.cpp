@@ -18,6 +18,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using plant_sim::formula::FormulaView;
+using plant_sim::formula::kAcceleration;
+using plant_sim::formula::kCommand;
+using plant_sim::formula::kPosition;
+using plant_sim::formula::kSignalNames;
+using plant_sim::formula::kSpeed;
+using plant_sim::formula::Signal;
 using Evaluator = plant_sim::formula::ExpressionEvaluator<double>;
 
 constexpr std::size_t kPoints = 61;
@@ -92,30 +98,26 @@ const char* quantity_of(const plant_sim::ModelFile& model, plant_sim::effects::S
   }
 }
 
-/// A formula with its values, over the one or the other of its variables.
+using Held = plant_sim::formula::Signals<double>;
+
+/// A formula with its values, over one of its variables.
 class Law {
  public:
-  Law(const FormulaView& formula, std::vector<double> values, std::size_t over)
-      : formula_(formula),
-        place_(*plant_sim::formula::find_formula_site(plant_sim::effects::site_name(formula.site))),
-        values_(std::move(values)),
-        over_(over),
-        run_(formula.program) {
+  Law(const FormulaView& formula, std::vector<double> values, Signal over)
+      : formula_(formula), values_(std::move(values)), over_(over), run_(formula.program) {
     run_.set_parameters(values_.data());
   }
 
-  [[nodiscard]] const plant_sim::formula::FormulaSite& place() const { return place_; }
-  [[nodiscard]] plant_sim::formula::VariableRange range(std::size_t variable) const {
+  [[nodiscard]] plant_sim::formula::VariableRange range(Signal variable) const {
     return formula_.ranges[variable];
   }
   /// The law adds this at its site.
-  [[nodiscard]] double operator()(double x, double held) const {
-    const double first = over_ == 0 ? x : held;
-    const double second = over_ == 0 ? held : x;
-    return run_(first, second) - (place_.chained ? first : 0.0);
+  [[nodiscard]] double operator()(double x, Held at) const {
+    at[over_] = x;
+    return run_(at.data()) - (formula_.place.chained ? at[formula_.place.first] : 0.0);
   }
   /// d f / d parameters over the whole grid, points x parameters.
-  [[nodiscard]] MatrixXd slopes(const std::vector<double>& x, double held) {
+  [[nodiscard]] MatrixXd slopes(const std::vector<double>& x, const Held& held) {
     MatrixXd all(static_cast<Index>(x.size()), static_cast<Index>(values_.size()));
     for (std::size_t p = 0; p < values_.size(); ++p) {
       const double at = values_[p];
@@ -130,7 +132,7 @@ class Law {
   }
 
  private:
-  VectorXd with(std::size_t p, double value, const std::vector<double>& x, double held) {
+  VectorXd with(std::size_t p, double value, const std::vector<double>& x, const Held& held) {
     values_[p] = value;
     run_.set_parameters(values_.data());
     VectorXd f(static_cast<Index>(x.size()));
@@ -139,9 +141,8 @@ class Law {
   }
 
   FormulaView formula_;
-  plant_sim::formula::FormulaSite place_;
   std::vector<double> values_;
-  std::size_t over_;
+  Signal over_;
   Evaluator run_;
 };
 
@@ -182,12 +183,24 @@ std::vector<double> errors_of(const MatrixXd& slopes, const VectorXd& errors,
 }
 
 double held_value(const plant_sim::ModelFile& model, const FitDataset& data, const Law& law,
-                  std::size_t variable) {
-  const std::string name = law.place().variables[variable];
-  if (name.empty()) return 0.0;
-  const Samples samples = samples_of(model, data, name);
+                  Signal variable) {
+  const Samples samples = samples_of(model, data, kSignalNames[variable]);
   if (samples.empty()) return 0.5 * (law.range(variable).min + law.range(variable).max);
-  return name == "v_mps" ? root_mean_square(samples) : mean(samples);
+  return variable == kPosition ? mean(samples) : root_mean_square(samples);
+}
+
+/// The formula's variable for "y", "v" or "u"; that of its site for any other.
+Signal variable_of(const FormulaView& formula, std::string_view over) {
+  const auto reads = [&](Signal signal) {
+    const auto* const end = formula.program.reads + formula.program.read_count;
+    return std::find(formula.program.reads, end, signal) != end;
+  };
+  const bool of_speed = over == "v" || over == "speed" || over == "direction";
+  if (of_speed && reads(kSpeed)) return kSpeed;
+  if (over == "y" && reads(kPosition)) return kPosition;
+  if (over == "acceleration" && reads(kAcceleration)) return kAcceleration;
+  if (over == "u" && !reads(formula.place.first) && reads(kCommand)) return kCommand;
+  return formula.place.first;
 }
 
 const FormulaView* formula_named(const plant_sim::formula::Formulas& all, std::string_view name) {
@@ -247,12 +260,10 @@ LawCurve law_curve(const plant_sim::ModelFile& model, const FitDataset& data,
   const plant_sim::formula::Formulas formulas = model.formulas();
   const FormulaView* const formula = formula_named(formulas, effect);
   if (formula == nullptr) return curve;
-  const bool of_speed = over == "v" || over == "speed" || over == "direction";
-  const std::size_t which =
-      of_speed && formula->site == plant_sim::effects::Site::force ? std::size_t{1} : 0;
+  const Signal which = variable_of(*formula, over);
   Law law(*formula, values_of(model, effect), which);
-  curve.variable = law.place().variables[which];
-  curve.quantity = quantity_of(model, formula->site);
+  curve.variable = kSignalNames[which];
+  curve.quantity = quantity_of(model, formula->place.site);
   const Samples samples = samples_of(model, data, curve.variable);
   if (samples.empty()) {
     curve.x = grid(law.range(which).min, law.range(which).max);
@@ -261,14 +272,20 @@ LawCurve law_curve(const plant_sim::ModelFile& model, const FitDataset& data,
     curve.x = grid(*low, *high);
     curve.share = shares(samples, curve.x);
   }
-  const double held = held_value(model, data, law, 1 - which);
-  double moved = 0.0;
-  for (const double x : curve.x) {
-    curve.f.push_back(law(x, held));
-    const double other = held + 0.1 * (law.range(1 - which).max - law.range(1 - which).min);
-    moved = std::max(moved, std::abs(law(x, other) - curve.f.back()));
+  Held held{};
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    held[i] = held_value(model, data, law, static_cast<Signal>(i));
   }
-  if (moved > 0.0) curve.held = {law.place().variables[1 - which], held};
+  for (const double x : curve.x) curve.f.push_back(law(x, held));
+  for (std::size_t i = 0; i < held.size() && !curve.held; ++i) {
+    const auto other = static_cast<Signal>(i);
+    if (other == which) continue;
+    Held moved = held;
+    moved[i] += 0.1 * (law.range(other).max - law.range(other).min);
+    for (std::size_t k = 0; k < curve.x.size() && !curve.held; ++k) {
+      if (law(curve.x[k], moved) != curve.f[k]) curve.held = {kSignalNames[i], held[i]};
+    }
+  }
   curve.std_error = errors_of(law.slopes(curve.x, held), errors, covariance);
   return curve;
 }

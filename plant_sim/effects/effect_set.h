@@ -16,11 +16,28 @@ class EffectSet : public EffectStore<S, E...> {
   using Store::formulas_;
 
  public:
+  // `motion` gives the formula::Motion<S> at the instant; it is asked for only where a formula
+  // acts.
+
   /// Call exactly once per step.
-  [[nodiscard]] S command_V(S u_V) {
+  template <class Motion>
+  [[nodiscard]] S command_V(S u_V, Motion&& motion) {
     this->template for_each_active<Site::command>(
         [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::command_V(p, memory, u_V); });
-    return apply_formulas<Site::command>(u_V);
+    return apply_formulas<Site::command>(u_V, motion);
+  }
+
+  /// Call after a reset with the motion that steps begin from.
+  template <class Motion>
+  void start(Motion&& motion) {
+    if (formulas_.size() > 0) formulas_.start(motion());
+  }
+  /// Speed at the end of the last step, where a formula acts.
+  [[nodiscard]] const S& held_speed_mps() const { return formulas_.held_speed_mps(); }
+  /// Call at the end of every step with the motion that it has led to.
+  template <class Motion>
+  void end_step(Motion&& motion, double step_s) {
+    if (formulas_.sites() != 0) formulas_.end_step(motion(), step_s);
   }
 
   [[nodiscard]] S spool_limit_mps() const {
@@ -31,12 +48,13 @@ class EffectSet : public EffectStore<S, E...> {
     return least;
   }
 
-  /// Behind a spool at `x_m`, the rod at `y_m`.
-  [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V, const S& y_m) const {
+  /// Behind a spool at `x_m`.
+  template <class Motion>
+  [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V, Motion&& motion) const {
     this->template for_each_active<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       x_m = T::opening_m(p, x_m, gain_m_per_V);
     });
-    return apply_formulas<Site::opening>(x_m, y_m);
+    return apply_formulas<Site::opening>(x_m, motion);
   }
 
   /// True when edges of the valve are open at null.
@@ -58,14 +76,16 @@ class EffectSet : public EffectStore<S, E...> {
     return supply_Pa;
   }
 
-  [[nodiscard]] S flow_m3ps(S flow_m3ps) const {
+  template <class Motion>
+  [[nodiscard]] S flow_m3ps(S flow_m3ps, Motion&& motion) const {
     this->template for_each_active<Site::flow>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       flow_m3ps = T::flow_m3ps(p, flow_m3ps);
     });
-    return apply_formulas<Site::flow>(flow_m3ps);
+    return apply_formulas<Site::flow>(flow_m3ps, motion);
   }
 
-  [[nodiscard]] Leak<S> leak(const S& in_Pa, const S& out_Pa) const {
+  template <class Motion>
+  [[nodiscard]] Leak<S> leak(const S& in_Pa, const S& out_Pa, Motion&& motion) const {
     Leak<S> sum;
     this->template for_each_active<Site::leakage>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       const Leak<S> one = T::leak(p, in_Pa, out_Pa);
@@ -73,7 +93,7 @@ class EffectSet : public EffectStore<S, E...> {
       sum.out_m3ps += one.out_m3ps;
     });
     if (formulas_.acts_on(Site::leakage)) {
-      const S across_m3ps = formulas_.sum(Site::leakage, in_Pa, out_Pa);
+      const S across_m3ps = formulas_.sum(Site::leakage, motion());
       sum.in_m3ps += across_m3ps;
       sum.out_m3ps -= across_m3ps;
     }
@@ -148,19 +168,26 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
   /// Sum of all forces against extension but dry friction.
-  [[nodiscard]] S resisting_N(const S& y_m, const S& v_mps) const {
+  template <class Motion>
+  [[nodiscard]] S resisting_N(const S& y_m, const S& v_mps, Motion&& motion) const {
     S sum_N = 0.0;
     this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       sum_N += T::resisting_N(p, y_m, v_mps);
     });
-    if (formulas_.acts_on(Site::force)) sum_N += formulas_.sum(Site::force, y_m, v_mps);
+    if (formulas_.acts_on(Site::force)) {
+      formula::Motion<S> at = motion();
+      at.y_m = y_m;
+      at.v_mps = v_mps;
+      sum_N += formulas_.sum(Site::force, at);
+    }
     return sum_N;
   }
 
   /// contact.drive_N less all resisting forces and dry friction; each dry friction sees the force
   /// that remains after those before it.
-  [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact) const {
-    contact.drive_N -= resisting_N(y_m, contact.v_mps);
+  template <class Motion>
+  [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact, Motion&& motion) const {
+    contact.drive_N -= resisting_N(y_m, contact.v_mps, motion);
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
           contact.drive_N -= T::friction_N(p, memory, contact);
@@ -197,7 +224,7 @@ class EffectSet : public EffectStore<S, E...> {
         [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
           y_m = T::reading_m(p, memory, y_m);
         });
-    return apply_formulas<Site::sensor>(y_m);
+    return formulas_.acts_on(Site::sensor) ? formulas_.chain(Site::sensor, y_m) : y_m;
   }
 
   /// Call once per accepted integration step.
@@ -222,10 +249,10 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
-  /// Chains the formulas of a site behind its effects; `second`: their other variable.
-  template <Site kSite>
-  [[nodiscard]] S apply_formulas(const S& x, const S& second = S(0.0)) const {
-    return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x, second) : x;
+  /// Chains the formulas of a site behind its effects.
+  template <Site kSite, class Motion>
+  [[nodiscard]] S apply_formulas(const S& x, Motion& motion) const {
+    return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x, motion()) : x;
   }
 };
 

@@ -1,8 +1,11 @@
 // Checks on a declared formula before simulation (formula.h).
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/formula.h"
 
 namespace plant_sim::formula {
@@ -11,8 +14,11 @@ namespace {
 using config::schema::bad_config;
 
 constexpr std::size_t kMostParameters = 6;  // every combination of their bounds is tried
-constexpr int kPointsAlone = 401;           // odd: the middle, often 0, is among them
-constexpr int kPointsEach = 21;
+/// Points of a signal by the number of signals that a formula reads; odd: the middle, often 0, is
+/// among them.
+constexpr std::array kPoints = {401, 401, 21, 7, 5, 3};
+/// Time over which a memory that does not settle adds up its rate, s.
+constexpr double kAddsUp_s = 10.0;
 
 std::string shown(double value) {
   if (std::isnan(value)) return "no number";
@@ -36,33 +42,47 @@ void check_parameter(const FormulaEffect::Parameter& p, bool used, const std::st
   if (!used) throw bad_config(where, "is not in the formula");
 }
 
-/// Calls f(values, result) on a grid over the variables' ranges, until it returns false.
+/// Signals that are tried: those that are read, and the one that a chained formula passes on.
+std::vector<Signal> tried(const Formula& formula) {
+  std::vector<Signal> signals = formula.reads();
+  const Signal own = formula.place.first;
+  const bool known = std::find(signals.begin(), signals.end(), own) != signals.end();
+  if (formula.place.chained && !known) signals.push_back(own);
+  return signals;
+}
+
+/// Calls f(signals) on a grid over the ranges of `over`, the others in the middle of theirs, until
+/// it returns false.
 template <class F>
-void each_point(const Formula& formula, const ExpressionEvaluator<double>& run, F&& f) {
-  const auto& [first, second] = formula.ranges;
-  const bool alone = *formula.place.variables[1] == '\0';
-  const int many = alone ? kPointsAlone : kPointsEach;
-  const int few = alone ? 1 : kPointsEach;
-  const auto at = [](const VariableRange& range, int i, int count) {
-    return count == 1 ? range.min : range.min + (range.max - range.min) * i / (count - 1);
-  };
-  for (int i = 0; i < many; ++i) {
-    for (int j = 0; j < few; ++j) {
-      const double a = at(first, i, many);
-      const double b = at(second, j, few);
-      if (!f(a, b, run(a, b))) return;
+void each_point(const Formula& formula, const std::vector<Signal>& over, F&& f) {
+  const int count = kPoints[std::min(over.size(), kPoints.size() - 1)];
+  Signals<double> at{};
+  for (std::size_t i = 0; i < kSignals; ++i) {
+    at[i] = 0.5 * (formula.ranges[i].min + formula.ranges[i].max);
+  }
+  std::vector<int> place(over.size(), 0);
+  while (true) {
+    for (std::size_t i = 0; i < over.size(); ++i) {
+      const VariableRange& range = formula.ranges[over[i]];
+      at[over[i]] = range.min + (range.max - range.min) * place[i] / (count - 1);
     }
+    if (!f(at)) return;
+    std::size_t digit = over.size();
+    while (digit > 0 && ++place[digit - 1] == count) place[--digit] = 0;
+    if (digit == 0) return;
   }
 }
 
-std::string point(const Formula& formula, double a, double b, const std::vector<double>& values) {
-  const auto& names = formula.place.variables;
-  std::string text = std::string(names[0]) + " = " + shown(a);
-  if (*names[1] != '\0') text += ", " + std::string(names[1]) + " = " + shown(b);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += ", " + std::string(formula.parameters[i].name) + " = " + shown(values[i]);
+std::string point(const Formula& formula, const Signals<double>& at,
+                  const std::vector<double>& values) {
+  std::vector<std::string> parts;
+  for (const Signal signal : tried(formula)) {
+    parts.push_back(std::string(kSignalNames[signal]) + " = " + shown(at[signal]));
   }
-  return text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    parts.push_back(std::string(formula.parameters[i].name) + " = " + shown(values[i]));
+  }
+  return config::schema::joined(parts);
 }
 
 void check_neutral(const Formula& formula, ExpressionEvaluator<double>& run,
@@ -70,28 +90,31 @@ void check_neutral(const Formula& formula, ExpressionEvaluator<double>& run,
   std::vector<double> neutral;
   for (const ParameterInfo& p : formula.parameters) neutral.push_back(p.neutral);
   run.set_parameters(neutral.data());
-  each_point(formula, run, [&](double a, double b, double result) {
-    const double none = formula.place.chained ? a : 0.0;
-    if (result == none) return true;
-    throw bad_config(
-        where,
-        "has influence when its parameters are neutral: " + shown(result) + " at " +
-            point(formula, a, b, neutral),
-        formula.place.chained ? std::string(formula.place.variables[0]) + " itself" : "0");
+  each_point(formula, tried(formula), [&](const Signals<double>& at) {
+    const double result = run(at.data());
+    const Signal own = formula.place.first;
+    if (result == (formula.place.chained ? at[own] : 0.0)) return true;
+    throw bad_config(where,
+                     "has influence when its parameters are neutral: " + shown(result) + " at " +
+                         point(formula, at, neutral),
+                     formula.place.chained ? std::string(kSignalNames[own]) + " itself" : "0");
   });
 }
 
-void check_finite(const Formula& formula, ExpressionEvaluator<double>& run,
+void check_finite(const Formula& formula, const ExpressionProgram& program,
                   const std::string& where) {
+  ExpressionEvaluator<double> run(view_of(program));
   const std::size_t count = formula.parameters.size();
+  // what has more is a curve, linear in its values
   std::size_t combinations = 1;
-  for (std::size_t i = 0; i < count; ++i) combinations *= 3;
+  for (std::size_t i = 0; i < count && count <= kMostParameters; ++i) combinations *= 3;
   std::vector<double> values(count);
   const auto try_out = [&] {
     run.set_parameters(values.data());
-    each_point(formula, run, [&](double a, double b, double result) {
+    each_point(formula, tried(formula), [&](const Signals<double>& at) {
+      const double result = run(at.data());
       if (std::isfinite(result)) return true;
-      throw bad_config(where, "is " + shown(result) + " at " + point(formula, a, b, values),
+      throw bad_config(where, "is " + shown(result) + " at " + point(formula, at, values),
                        "finite values: bound the parameters, or guard with max() or if()");
     });
   };
@@ -109,20 +132,42 @@ void check_finite(const Formula& formula, ExpressionEvaluator<double>& run,
 
 }  // namespace
 
+VariableRange memory_range(const Formula& formula) {
+  ExpressionEvaluator<double> rate(view_of(formula.memory));
+  std::vector<double> typical;
+  for (const ParameterInfo& p : formula.parameters) typical.push_back(p.typical);
+  rate.set_parameters(typical.data());
+  VariableRange range;
+  std::vector<Signal> others = formula.reads();
+  std::erase(others, kMemory);
+  each_point(formula, others, [&](Signals<double> at) {
+    at[kMemory] = 0.0;
+    const double from_0 = rate(at.data());
+    at[kMemory] = 1.0;
+    const double slope = rate(at.data()) - from_0;
+    const double end = slope < 0.0 ? -from_0 / slope : kAddsUp_s * from_0;
+    if (std::isfinite(end)) range = {std::min(range.min, end), std::max(range.max, end)};
+    return true;
+  });
+  return range;
+}
+
 void check(const FormulaEffect& effect, const Formula& formula, const std::string& where) {
   if (effect.parameters.empty()) {
     throw bad_config(where, "has no parameter", "at least one, in [.parameters.NAME]");
   }
-  if (effect.parameters.size() > kMostParameters) {
+  if (effect.parameters.size() > kMostParameters && !effect.curve) {
     throw bad_config(where, "has " + std::to_string(effect.parameters.size()) + " parameters",
                      "up to " + std::to_string(kMostParameters));
   }
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const FormulaEffect::Parameter& p = effect.parameters[i];
-    check_parameter(p, formula.program.uses[i], where + " parameters." + p.name);
+    const bool used = formula.program.uses[i] || (formula.remembers && formula.memory.uses[i]);
+    check_parameter(p, used, where + " parameters." + p.name);
   }
+  check_finite(formula, formula.program, where + " formula");
+  if (formula.remembers) check_finite(formula, formula.memory, where + " memory");
   ExpressionEvaluator<double> run(view_of(formula.program));
-  check_finite(formula, run, where + " formula");
   check_neutral(formula, run, where + " formula");
 }
 

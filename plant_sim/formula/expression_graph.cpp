@@ -115,7 +115,11 @@ ExpressionProgram ExpressionGraph::program(Handle result) {
   std::uint16_t next = 0;
   for (std::size_t i = 0; i < ExpressionProgram::kVariables + parameters_; ++i) {
     place[i] = next++;
-    if (i >= ExpressionProgram::kVariables) program.uses.push_back(needed[i]);
+    if (i >= ExpressionProgram::kVariables) {
+      program.uses.push_back(needed[i]);
+    } else if (needed[i]) {
+      program.reads.push_back(place[i]);
+    }
   }
   const auto each_needed = [&](Kind kind, bool moving, auto&& f) {
     for (std::size_t i = ExpressionProgram::kVariables + parameters_; i < nodes_.size(); ++i) {

@@ -10,13 +10,9 @@ ExpressionProgramView view_of(const ExpressionProgram& program) {
   const std::size_t registers = ExpressionProgram::kVariables + program.parameters +
                                 program.constants.size() + program.steady.size() +
                                 program.moving.size();
-  return {program.parameters,
-          program.constants.data(),
-          program.constants.size(),
-          part(program.steady),
-          part(program.moving),
-          program.result,
-          registers};
+  return {program.parameters,   program.constants.data(), program.constants.size(),
+          part(program.steady), part(program.moving),     program.reads.data(),
+          program.reads.size(), program.result,           registers};
 }
 
 }  // namespace plant_sim::formula

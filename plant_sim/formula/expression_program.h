@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "plant_sim/formula/operations.h"
+#include "plant_sim/formula/signals.h"
 
 namespace plant_sim::formula {
 
 struct ExpressionProgram {
-  /// Number of variables of every formula, used or not; no site has more.
-  static constexpr std::size_t kVariables = 2;
+  /// Number of variables of every formula, used or not: its signals.
+  static constexpr std::size_t kVariables = kSignals;
 
   struct Instruction {
     Op op;
@@ -27,7 +28,8 @@ struct ExpressionProgram {
   std::vector<Instruction> steady;  ///< depend on parameters alone
   std::vector<Instruction> moving;
   std::size_t result = 0;
-  std::vector<bool> uses;  ///< parameters that the result depends on
+  std::vector<bool> uses;            ///< parameters that the result depends on
+  std::vector<std::uint16_t> reads;  ///< variables that it depends on
 };
 
 /// A program as plain pointers: code that is compiled once per instruction set shares no
@@ -41,6 +43,8 @@ struct ExpressionProgramView {
   const double* constants;
   std::size_t constant_count;
   Part steady, moving;
+  const std::uint16_t* reads;
+  std::size_t read_count;
   std::size_t result;
   std::size_t registers;
 };
@@ -64,11 +68,12 @@ class ExpressionEvaluator {
         ExpressionProgram::kVariables + program_.parameters + program_.constant_count);
   }
 
-  /// Value of the formula; may be infinite or NaN.
-  [[nodiscard]] S operator()(const S& first, const S& second) const {
+  /// Value of the formula at kVariables `variables`; may be infinite or NaN.
+  [[nodiscard]] S operator()(const S* variables) const {
     S* const at = registers_.data();
-    at[0] = first;
-    at[1] = second;
+    for (std::size_t i = 0; i < program_.read_count; ++i) {
+      at[program_.reads[i]] = variables[program_.reads[i]];
+    }
     const ExpressionProgramView::Part& part = program_.moving;
     run(part, program_.registers - static_cast<std::size_t>(part.last - part.first));
     return at[program_.result];

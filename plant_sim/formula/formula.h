@@ -22,19 +22,23 @@ struct Formula {
   std::string name;
   FormulaSite place;
   ExpressionProgram program;
+  ExpressionProgram memory;  ///< dz/dt, where it remembers
+  bool remembers = false;
   std::vector<ParameterInfo> parameters;
-  std::array<VariableRange, ExpressionProgram::kVariables>
-      ranges;  ///< ranges of the site's variables; none is 0..0
+  std::array<VariableRange, kSignals> ranges;  ///< of the signals; 0..0 where there is none
+  /// Signals whose values the formula or its memory depends on.
+  [[nodiscard]] std::vector<Signal> reads() const;
 };
 
 /// A formula as plain pointers, for simulation.
 struct FormulaView {
   const char* name;
-  effects::Site site;
-  double guard;
+  FormulaSite place;
   const ParameterInfo* parameters;
   ExpressionProgramView program;
-  VariableRange ranges[ExpressionProgram::kVariables];
+  ExpressionProgramView memory;
+  bool remembers;
+  VariableRange ranges[kSignals];
 };
 
 /// The formulas of a model. Must outlive the simulation that uses them.
@@ -58,7 +62,13 @@ struct PlausibleRanges {
   VariableRange pressure_Pa;
   VariableRange position_m;
   VariableRange speed_mps{-2.0, 2.0};
+  VariableRange acceleration_mps2{-100.0, 100.0};
+  bool has_opening = true;    ///< the plant has a spool
+  bool has_pressures = true;  ///< the plant has chambers
 };
+
+/// Range in which the memory settles while the other signals are within theirs.
+[[nodiscard]] VariableRange memory_range(const Formula& formula);
 
 /// Checks the names and parses the formula. Throws config::schema::ConfigError; `where` is the
 /// effect's table in a file.

@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "config/schema/visitor.h"
+#include "plant_sim/formula/curve_effect.h"
 
 namespace plant_sim::formula {
 
@@ -23,7 +24,12 @@ void FormulaEffect::visit(Visitor& v) {
   sites.reserve(std::size(kFormulaSites));
   for (const FormulaSite& one : kFormulaSites) sites.emplace_back(effects::site_name(one.site));
   v.choice({"site", "site of the effect", true}, site, sites);
+  if (curve) {
+    visit_curve(v);
+    return;
+  }
   v.text({"formula", "an expression of the site's variables and its parameters", true}, formula);
+  v.text({"memory", "rate of change of the memory z, an expression like the formula"}, memory);
   v.text({"what", "meaning in one phrase"}, what);
   std::vector<std::string> names;
   names.reserve(parameters.size());
@@ -36,6 +42,24 @@ void FormulaEffect::visit(Visitor& v) {
       t.table(names[i].c_str(), [&](Visitor& p) { parameters[i].visit(p); });
     }
   });
+}
+
+void FormulaEffect::visit_curve(Visitor& v) {
+  constexpr config::schema::Range kFinite{-1e300, 1e300};
+  v.text({"over", "signal that the curve goes over", true}, curve->over);
+  v.text({"times", "further signal, by which the curve is multiplied"}, curve->times);
+  v.numbers({"x", "points of the curve, ascending", true}, curve->x, kFinite);
+  v.numbers({"f", "values of the curve there, in the unit of the site", true}, curve->f, kFinite);
+  v.text({"what", "meaning in one phrase"}, what);
+  derive_formula(*this);
+}
+
+std::string FormulaEffect::equation() const {
+  if (!curve) return formula;
+  const FormulaSite* const place = find_formula_site(site);
+  const bool chained = place != nullptr && place->chained;
+  return (chained ? std::string(kSignalNames[place->first]) + " + " : std::string()) +
+         (curve->times.empty() ? "" : curve->times + " * ") + "f(" + curve->over + ")";
 }
 
 const FormulaSite* find_formula_site(std::string_view name) {

@@ -16,28 +16,42 @@
 //   [effects.cubic_drag]         # presence adds it
 //   c_N_s3_per_m3 = 1.2e5
 //
-// By site, the formula gives, from variables:
+// By site, the formula gives, from variables of the site:
 //   command   the command to the valve, V              u_V
 //   opening   the valve opening from spool position    x_m (of velocity_servo: speed, m/s), y_m
 //   flow      the flow of one orifice, m3/s            q_m3ps
 //   leakage   what leaks from chamber i to o, m3/s     in_Pa, out_Pa
 //   force     a force against extension, N             y_m, v_mps
 //   sensor    what the position sensor shows, m        y_m
-// It acts after the library's effects of its site, in the order of declaration. It has no memory.
+// and from the plant's other signals (signals.h). It acts after the library's effects of its site,
+// in the order of declaration. With one line more it has a memory z, which starts at 0:
+//
+//   memory = "(abs(v_mps) - z) / warm_s"                 # dz/dt: here a lag, a hidden level
+//   formula = "drop_N_s_per_m * v_mps * z"
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "plant_sim/effects/site.h"
+#include "plant_sim/formula/signals.h"
 
 namespace config::schema {
 class Visitor;
 }
 
 namespace plant_sim::formula {
+
+/// A curve in the place of a formula (curve_effect.h), over one signal and perhaps times another.
+struct CurveTable {
+  std::string over;
+  std::string times;  ///< empty: none
+  std::vector<double> x;
+  std::vector<double> f;  ///< as declared: the model's effect has its values
+};
 
 struct FormulaEffect {
   struct Parameter {
@@ -56,26 +70,36 @@ struct FormulaEffect {
   std::string formula;
   std::string what;
   std::vector<Parameter> parameters;
+  std::string memory;  ///< dz/dt; empty: none
+  /// Where the file has a table in the place of a formula, which is derived from it.
+  std::optional<CurveTable> curve;
+
+  /// The formula, or in words that it is a curve.
+  [[nodiscard]] std::string equation() const;
 
   void visit(config::schema::Visitor& v);
+
+ private:
+  void visit_curve(config::schema::Visitor& v);
 };
 
 /// A site that accepts a formula.
 struct FormulaSite {
   effects::Site site;
-  const char* result;                    ///< result of the formula, as printed in equations
-  std::array<const char*, 2> variables;  ///< "" is none
-  bool chained;  ///< without influence it returns its first variable; else 0, and it is added
-  double guard;  ///< numerical bound of the result, far beyond anything real
+  const char* result;  ///< result of the formula, as printed in equations
+  Signal first;        ///< the site's own variable
+  Signal second;       ///< another that it goes with; the same: none
+  bool chained;        ///< without influence it returns its own variable; else 0, and it is added
+  double guard;        ///< numerical bound of the result, far beyond anything real
 };
 
 inline constexpr std::array kFormulaSites = {
-    FormulaSite{effects::Site::command, "u_out", {"u_V", ""}, true, 1e4},
-    FormulaSite{effects::Site::opening, "opening", {"x_m", "y_m"}, true, 1e6},
-    FormulaSite{effects::Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
-    FormulaSite{effects::Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
-    FormulaSite{effects::Site::force, "F", {"y_m", "v_mps"}, false, 1e9},
-    FormulaSite{effects::Site::sensor, "reading", {"y_m", ""}, true, 1e9},
+    FormulaSite{effects::Site::command, "u_out", kCommand, kCommand, true, 1e4},
+    FormulaSite{effects::Site::opening, "opening", kSpool, kPosition, true, 1e6},
+    FormulaSite{effects::Site::flow, "Q", kFlow, kFlow, true, 1e3},
+    FormulaSite{effects::Site::leakage, "Q", kInPressure, kOutPressure, false, 1e3},
+    FormulaSite{effects::Site::force, "F", kPosition, kSpeed, false, 1e9},
+    FormulaSite{effects::Site::sensor, "reading", kPosition, kPosition, true, 1e9},
 };
 
 /// Null for a site that accepts no formula.

@@ -16,6 +16,8 @@ class FormulaSet {
  public:
   FormulaSet() = default;
 
+  [[nodiscard]] std::size_t size() const { return effects_.size(); }
+
   /// Replaces the declared formulas; all values are neutral. The viewed data must outlive *this.
   void declare(const FormulaView* formulas, std::size_t count) {
     effects_.clear();
@@ -49,7 +51,7 @@ class FormulaSet {
     sites_ = 0;
     for (Effect& effect : effects_) {
       if (!fresh_ && effect.unchanged() && always == always_) {
-        if (effect.active) sites_ |= bit(effect.formula.site);
+        if (effect.active) sites_ |= bit(effect.site());
         continue;
       }
       bool neutral = true;
@@ -62,20 +64,11 @@ class FormulaSet {
       }
       effect.active = !neutral || always;
       if (!effect.active) continue;
-      sites_ |= bit(effect.formula.site);
+      sites_ |= bit(effect.site());
       effect.run.set_parameters(effect.values.data());
-      if (effect.formula.site == effects::Site::force) {
-        effect.max_slope.prepare(
-            effect.formula.ranges[0], effect.formula.ranges[1],
-            [&](const S& y_m, const S& v_mps) { return effect.contribution(y_m, v_mps); });
-      }
-      if (effect.formula.site == effects::Site::leakage) {
-        effect.conductance_m3ps_per_Pa =
-            S(2.0) *
-            steepest_m3ps_per_Pa<S>(effect.formula.ranges[0], [&](const S& in_Pa, const S& out_Pa) {
-              return effect.contribution(in_Pa, out_Pa);
-            });
-      }
+      if (effect.formula.remembers) effect.rate.set_parameters(effect.values.data());
+      if (effect.site() == effects::Site::force) effect.find_slopes();
+      if (effect.site() == effects::Site::leakage) effect.find_conductance();
     }
     fresh_ = false;
     always_ = always;
@@ -85,16 +78,37 @@ class FormulaSet {
   [[nodiscard]] unsigned sites() const { return sites_; }
   [[nodiscard]] bool acts_on(effects::Site site) const { return (sites_ & bit(site)) != 0; }
 
-  /// Chained sites: applies the formulas to x one after the other.
-  [[nodiscard]] S chain(effects::Site site, S x, const S& second) const {
-    each_active(site, [&](const Effect& effect) { x = effect.result(x, second, x); });
-    return x;
+  /// The motion from which steps begin; memories are empty.
+  void start(const Motion<S>& motion) {
+    held_ = signals_of(motion);
+    for (Effect& effect : effects_) effect.memory = 0.0;
   }
 
+  /// Brings acceleration and memories up to date; call at the end of every step.
+  void end_step(const Motion<S>& motion, double step_s) {
+    Signals<S> now = signals_of(motion);
+    now[kAcceleration] = (motion.v_mps - held_[kSpeed]) * S(1.0 / step_s);
+    held_ = now;
+    for (Effect& effect : effects_) {
+      if (effect.active && effect.formula.remembers) effect.remember(now, step_s);
+    }
+  }
+
+  /// Speed at the end of the last step.
+  [[nodiscard]] const S& held_speed_mps() const { return held_[kSpeed]; }
+
+  /// Chained sites: applies the formulas to x one after the other.
+  [[nodiscard]] S chain(effects::Site site, S x, const Motion<S>& motion) const {
+    return chain(site, x, signals(motion));
+  }
+  /// The same in the motion at the end of the last step.
+  [[nodiscard]] S chain(effects::Site site, const S& x) const { return chain(site, x, held_); }
+
   /// Force and leakage: sum of the formulas.
-  [[nodiscard]] S sum(effects::Site site, const S& first, const S& second) const {
+  [[nodiscard]] S sum(effects::Site site, const Motion<S>& motion) const {
+    Signals<S> at = signals(motion);
     S total = 0.0;
-    each_active(site, [&](const Effect& effect) { total += effect.contribution(first, second); });
+    each_active(site, [&](const Effect& effect) { total += effect.contribution(at); });
     return total;
   }
 
@@ -131,7 +145,8 @@ class FormulaSet {
 
  private:
   struct Effect {
-    explicit Effect(const FormulaView& declared) : formula(declared), run(declared.program) {
+    explicit Effect(const FormulaView& declared)
+        : formula(declared), run(declared.program), rate(declared.memory) {
       values.reserve(declared.program.parameters);
       for (std::size_t i = 0; i < declared.program.parameters; ++i) {
         values.emplace_back(declared.parameters[i].neutral);
@@ -145,24 +160,101 @@ class FormulaSet {
                          static_cast<const void*>(prepared.data()), values.size() * sizeof(S)) == 0;
     }
 
+    [[nodiscard]] effects::Site site() const { return formula.place.site; }
+
     /// The formula's value within the guard; `none` where it is not finite.
-    [[nodiscard]] S result(const S& first, const S& second, const S& none) const {
-      constexpr double kFinite = 1e300;
-      const S value = run(first, second);
-      const S guard = formula.guard;
-      return select(abs(value) <= S(kFinite), clamp(value, -guard, guard), none);
+    [[nodiscard]] S result(Signals<S>& at, const S& none) const {
+      at[kMemory] = memory;
+      return guarded(at, none);
     }
-    [[nodiscard]] S contribution(const S& first, const S& second) const {
-      return result(first, second, S(0.0));
+    [[nodiscard]] S contribution(Signals<S>& at) const { return result(at, S(0.0)); }
+
+    /// One step of z' = rate(z), exact where the rate is linear in z and the rest is held.
+    void remember(Signals<S> at, double step_s) {
+      constexpr double kMostExponent = 50.0;
+      constexpr double kSmallExponent = 1e-6;
+      const S width = 1e-3 * (formula.ranges[kMemory].max - formula.ranges[kMemory].min) + 1e-9;
+      if (site() == effects::Site::command) at[kCommand] = own;  // once per step: this step's
+      at[kMemory] = memory + width;
+      const S above = rate(at.data());
+      at[kMemory] = memory;
+      const S now = rate(at.data());
+      const S exponent = clamp((above - now) / width * S(step_s), S(-kMostExponent), S(1.0));
+      const S whole =
+          (exp(exponent) - S(1.0)) / select(abs(exponent) < S(kSmallExponent), S(1.0), exponent);
+      const S share = select(abs(exponent) < S(kSmallExponent), S(1.0) + S(0.5) * exponent, whole);
+      const S next = memory + now * S(step_s) * share;
+      memory = select(abs(next) <= S(kFinite), next, memory);
+    }
+
+    /// Slopes of a force over position and speed, the largest for the other signals within their
+    /// ranges.
+    void find_slopes() {
+      max_slope = {};
+      each_surrounding([&](Signals<S>& at) {
+        max_slope.include(formula.ranges[kPosition], formula.ranges[kSpeed],
+                          [&](const S& y_m, const S& v_mps) {
+                            at[kPosition] = y_m;
+                            at[kSpeed] = v_mps;
+                            return guarded(at, S(0.0));
+                          });
+      });
+    }
+    void find_conductance() {
+      conductance_m3ps_per_Pa = 0.0;
+      each_surrounding([&](Signals<S>& at) {
+        const S steepest = steepest_m3ps_per_Pa<S>(formula.ranges[kInPressure],
+                                                   [&](const S& in_Pa, const S& out_Pa) {
+                                                     at[kInPressure] = in_Pa;
+                                                     at[kOutPressure] = out_Pa;
+                                                     return guarded(at, S(0.0));
+                                                   });
+        conductance_m3ps_per_Pa = max(conductance_m3ps_per_Pa, S(2.0) * steepest);
+      });
     }
 
     FormulaView formula;
     ExpressionEvaluator<S> run;
+    ExpressionEvaluator<S> rate;  ///< of the memory
+    S memory = 0.0;
+    mutable S own = 0.0;  ///< of a chained formula: its own variable when it was last evaluated
     std::vector<S> values;
     std::vector<S> prepared;  ///< state of the last prepare()
     MaxSlope<S> max_slope;
     S conductance_m3ps_per_Pa = 0.0;
     bool active = false;
+
+   private:
+    static constexpr double kFinite = 1e300;
+
+    /// The same with the memory that the signals state.
+    [[nodiscard]] S guarded(const Signals<S>& at, const S& none) const {
+      const S value = run(at.data());
+      const S guard = formula.place.guard;
+      return select(abs(value) <= S(kFinite), clamp(value, -guard, guard), none);
+    }
+    /// Calls f with every signal in the middle of its range, then at its ends where the formula
+    /// reads more than the two of its site.
+    template <class F>
+    void each_surrounding(F&& f) {
+      const auto all_at = [&](double share) {
+        Signals<S> at;
+        for (std::size_t i = 0; i < kSignals; ++i) {
+          at[i] = formula.ranges[i].min + share * (formula.ranges[i].max - formula.ranges[i].min);
+        }
+        return at;
+      };
+      bool more = false;
+      for (std::size_t i = 0; i < formula.program.read_count; ++i) {
+        const std::size_t signal = formula.program.reads[i];
+        more = more || (signal != formula.place.first && signal != formula.place.second);
+      }
+      for (const double share : {0.5, 0.0, 1.0}) {
+        Signals<S> at = all_at(share);
+        f(at);
+        if (!more) return;
+      }
+    }
   };
 
   static constexpr unsigned bit(effects::Site site) { return 1U << static_cast<unsigned>(site); }
@@ -170,11 +262,26 @@ class FormulaSet {
   template <class F>
   void each_active(effects::Site site, F&& f) const {
     for (const Effect& effect : effects_) {
-      if (effect.active && effect.formula.site == site) f(effect);
+      if (effect.active && effect.site() == site) f(effect);
     }
   }
 
+  [[nodiscard]] Signals<S> signals(const Motion<S>& motion) const {
+    Signals<S> at = signals_of(motion);
+    at[kAcceleration] = held_[kAcceleration];
+    return at;
+  }
+  [[nodiscard]] S chain(effects::Site site, S x, Signals<S> at) const {
+    each_active(site, [&](const Effect& effect) {
+      at[effect.formula.place.first] = x;
+      effect.own = x;
+      x = effect.result(at, x);
+    });
+    return x;
+  }
+
   std::vector<Effect> effects_;
+  Signals<S> held_{};  ///< at the end of the last step
   unsigned sites_ = 0;
   bool fresh_ = false;
   bool always_ = false;  ///< as the last prepare() was called

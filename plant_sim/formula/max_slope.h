@@ -37,13 +37,14 @@ S steepest_m3ps_per_Pa(const VariableRange& pressure_Pa, F&& leak_m3ps) {
   return most;
 }
 
-/// Slope and stiffness of a force F(y, v), found once per change of parameters. Speeds are divided
+/// Slope and stiffness of forces F(y, v), found once per change of parameters. Speeds are divided
 /// into octaves from 0.1 mm/s to beyond the speed guard.
 template <class S>
 class MaxSlope {
  public:
+  /// Raises the slopes to those of a further force.
   template <class F>
-  void prepare(const VariableRange& position_m, const VariableRange& speed_mps, F&& force_N) {
+  void include(const VariableRange& position_m, const VariableRange& speed_mps, F&& force_N) {
     const double way_m = position_m.max - position_m.min;
     const auto stiffest = [&](double v_mps) {
       S most = 0.0;
@@ -62,14 +63,14 @@ class MaxSlope {
       S& slope = slopes_N_s_per_m_[i];
       const double edge_mps = i + 1 < kOctaves ? to_mps : speed_mps.max;
       stiffness = max(stiffness, max(stiffest(edge_mps), stiffest(-edge_mps)));
-      stiffnesses_N_per_m_[i] = stiffness;
+      stiffnesses_N_per_m_[i] = max(stiffnesses_N_per_m_[i], stiffness);
       for (const double place : {0.0, 0.5, 1.0}) {
         const S y_m = position_m.min + place * way_m;
         const auto by_speed = [&](const S& v) { return force_N(y_m, v); };
         for (const double sign : {1.0, -1.0})
           most = max(most, octave(by_speed, sign * from_mps, sign * to_mps));
       }
-      slope = most;
+      slope = max(slope, most);
       from_mps = to_mps;
       to_mps *= 2.0;
     }
@@ -120,8 +121,8 @@ class MaxSlope {
     return most;
   }
 
-  std::array<S, kOctaves> slopes_N_s_per_m_;
-  std::array<S, kOctaves> stiffnesses_N_per_m_;
+  std::array<S, kOctaves> slopes_N_s_per_m_{};
+  std::array<S, kOctaves> stiffnesses_N_per_m_{};
 };
 
 }  // namespace plant_sim::formula

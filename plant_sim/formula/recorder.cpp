@@ -178,6 +178,7 @@ ExpressionProgram record_formula(const std::string& text, const std::vector<std:
                      "if(condition, yes, no)");
   }
   std::vector<std::string> names = variables;
+  std::erase(names, "");
   names.insert(names.end(), parameters.begin(), parameters.end());
   ExpressionGraph here(parameters.size());
   struct Scope {
@@ -191,8 +192,9 @@ ExpressionProgram record_formula(const std::string& text, const std::vector<std:
       handles.push_back(handle);
       parser.DefineVar(name, &handles.back());
     };
-    for (std::size_t i = 0; i < variables.size(); ++i)
-      define(variables[i], ExpressionGraph::input(i));
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      if (!variables[i].empty()) define(variables[i], ExpressionGraph::input(i));
+    }
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       define(parameters[i], ExpressionGraph::input(ExpressionProgram::kVariables + i));
     }

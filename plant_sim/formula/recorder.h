@@ -10,9 +10,9 @@
 
 namespace plant_sim::formula {
 
-/// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
-/// may use, besides pi. Throws config::schema::ConfigError at `where`, with position and token,
-/// when the text is not a single expression of these.
+/// `variables` (at most ExpressionProgram::kVariables, by their place; "" is none) and `parameters`
+/// are the names that the text may use, besides pi. Throws config::schema::ConfigError at `where`,
+/// with position and token, when the text is not a single expression of these.
 [[nodiscard]] ExpressionProgram record_formula(const std::string& text,
                                                const std::vector<std::string>& variables,
                                                const std::vector<std::string>& parameters,

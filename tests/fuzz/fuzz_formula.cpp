@@ -40,7 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     plant_sim::formula::ExpressionEvaluator<double> run(view_of(formula.program));
     const double values[] = {1.0, 2.0};
     run.set_parameters(values);
-    (void)run(0.1, 0.2);
+    const plant_sim::formula::Signals<double> at{0.1, 0.2};
+    (void)run(at.data());
     plant_sim::formula::check(effect, formula, "fuzz");
   });
   return 0;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
+#include "plant_sim/formula/curve_effect.h"
 #include "workbench/add/declared_formula.h"
 
 namespace workbench::add {
@@ -37,6 +38,12 @@ FormulaEffect formula_of(const ordered_json& law, std::vector<double>& values) {
                                  p.at("max").get<double>(), p.at("typical").get<double>(),
                                  p.at("neutral").get<double>()});
     values.push_back(p.at("value").get<double>());
+  }
+  if (law.contains("table") && !law["table"].is_null()) {
+    const ordered_json& table = law["table"];
+    effect.curve = {table.at("over").get<std::string>(), table.at("times").get<std::string>(),
+                    table.at("x").get<std::vector<double>>(), values};
+    derive_formula(effect);
   }
   return effect;
 }

@@ -69,7 +69,7 @@ void require_complete(const FormulaEffect& effect) {
   try {
     const Formula formula = compile(effect, {}, kOption);
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (formula.program.uses[i]) continue;
+      if (formula.program.uses[i] || (formula.remembers && formula.memory.uses[i])) continue;
       throw UsageError(error_line(effect.parameters[i].name, "is not in the formula",
                                   "parameters of " + effect.formula));
     }
@@ -120,10 +120,11 @@ FormulaEffect with_ranges(const ModelFile& model, FormulaEffect effect) {
 
 }  // namespace
 
-AddedEffect add_formula(const std::string& file, const std::string& text, const std::string& name,
-                        const std::vector<std::string>& assignments) {
+AddedEffect add_formula(const std::string& file, const std::string& text, const std::string& memory,
+                        const std::string& name, const std::vector<std::string>& assignments) {
   ModelFile model = plant_sim::load_model(file);
   FormulaEffect effect = parsed(text, name);
+  effect.memory = memory;
   require_site(model, effect.site, kOption);
   const std::vector<double> values = given(effect, assignments);
   require_complete(effect);

@@ -8,13 +8,13 @@
 
 namespace workbench::add {
 
-/// The model of `file` with the formula `text`, "SITE: EXPRESSION", declared as `name` (empty:
-/// own_SITE) and present. Each parameter of the expression is given in `assignments`, above or
-/// below 0; its range and neutral value are chosen about that size so that the formula stays
-/// finite, and has no influence where all are neutral. Throws config::schema::UsageError for a
-/// formula that the model cannot have.
+/// The model of `file` with the formula `text`, "SITE: EXPRESSION", and the rate of its memory z
+/// (empty: none) declared as `name` (empty: own_SITE) and present. Each parameter of the expression
+/// is given in `assignments`, above or below 0; its range and neutral value are chosen about that
+/// size so that the formula stays finite, and has no influence where all are neutral. Throws
+/// config::schema::UsageError for a formula that the model cannot have.
 [[nodiscard]] AddedEffect add_formula(const std::string& file, const std::string& text,
-                                      const std::string& name,
+                                      const std::string& memory, const std::string& name,
                                       const std::vector<std::string>& assignments);
 
 /// The model of `file` with law number `number` (from 1) of a diagnosis's JSON, at the values that

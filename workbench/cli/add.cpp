@@ -21,7 +21,7 @@ namespace {
 struct AddOptions {
   std::string model, effect, output;
   std::vector<std::string> assignments;
-  std::string formula, name, diagnosis;
+  std::string formula, memory, name, diagnosis;
   int law = 0;
 };
 
@@ -38,10 +38,10 @@ add::AddedEffect added_by(const AddOptions& options) {
   std::vector<std::string> assignments = options.assignments;
   // no EFFECT there: the first word is an assignment too
   if (!options.effect.empty()) assignments.insert(assignments.begin(), options.effect);
-  return options.law != 0
-             ? add::add_law(options.model, options.diagnosis, options.law, options.name,
-                            assignments)
-             : add::add_formula(options.model, options.formula, options.name, assignments);
+  return options.law != 0 ? add::add_law(options.model, options.diagnosis, options.law,
+                                         options.name, assignments)
+                          : add::add_formula(options.model, options.formula, options.memory,
+                                             options.name, assignments);
 }
 
 void write_added(const AddOptions& options) {
@@ -71,6 +71,10 @@ void add_add(CLI::App& command, int&) {
   CLI::Option* const formula = command.add_option(
       "--formula", options->formula,
       "SITE: EXPRESSION, a formula of one's own with its parameters: \"force: c*v_mps^3\" c=1e5");
+  command
+      .add_option("--memory", options->memory,
+                  "rate of change of a memory z that the formula reads: \"(u_V - z)/lag_s\"")
+      ->needs(formula);
   CLI::Option* const law =
       command.add_option("--law", options->law, "the N-th law of a diagnosis, from 1")
           ->excludes(formula);

@@ -58,7 +58,8 @@ class Dictionary {
     const bool known = std::any_of(model_.formula_effects.begin(), model_.formula_effects.end(),
                                    [&](const FormulaEffect& own) { return own.name == name; });
     if (known || std::find(sites.begin(), sites.end(), site) == sites.end()) return;
-    laws_.push_back({{name, site, formula, what, std::move(parameters)}, std::move(variables)});
+    laws_.push_back(
+        {{name, site, formula, what, std::move(parameters), "", {}}, std::move(variables)});
   }
 
   /// A position about which a law turns.

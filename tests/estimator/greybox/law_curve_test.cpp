@@ -27,7 +27,7 @@ plant_sim::ModelFile with_formula(const std::string& plant, const std::string& s
                                   const std::vector<std::pair<std::string, double>>& values) {
   plant_sim::ModelFile model =
       plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/" + plant + ".toml");
-  plant_sim::formula::FormulaEffect effect{"law", site, formula, "", {}};
+  plant_sim::formula::FormulaEffect effect{"law", site, formula, "", {}, "", {}};
   for (const auto& [name, value] : values)
     effect.parameters.push_back({name, "", -1e6, 1e6, 1.0, 0.0});
   model.declare(effect, "test");

@@ -79,6 +79,90 @@ TEST(FormulaEffect, FollowsTheClosedFormOfASteadyState) {
   EXPECT_NEAR(plant->speed_mps(), v_mps, 1e-9);
 }
 
+/// Model with the formula `own`, its parameter k and a further line of its table.
+ModelFile own_model(const std::string& plant, const std::string& site, const std::string& formula,
+                    const std::string& line, const std::string& k) {
+  return model_of(plant_text(plant) + "[formula_effects.own]\nsite = \"" + site +
+                  "\"\nformula = \"" + formula + "\"\n" + line +
+                  "\n[formula_effects.own.parameters.k]\nmin = -1e6\nmax = 1e6\ntypical = 1.0\n" +
+                  "[effects.own]\nk = " + k + "\n");
+}
+
+TEST(FormulaEffect, SeesTheCommandInAForce) {
+  // gain u - k u: an axis of a lower gain
+  auto own = make_plant(own_model("force_driven_axis", "force", "k*u_V", "", "5.0"));
+  auto library =
+      make_plant(model_of(plant_text("force_driven_axis") + "[parameters]\ngain_N_per_V = 30.0\n"));
+  for (int k = 0; k < 400; ++k) {
+    own->advance(drive_V(k, 20.0), 0.005);
+    library->advance(drive_V(k, 20.0), 0.005);
+    ASSERT_NEAR(own->position_m(), library->position_m(), kAgree);
+  }
+}
+
+TEST(FormulaEffect, SeesThePressuresInAForce) {
+  // the force of the oil, A (Pi - Po), undone: the rod stays, whatever the valve does
+  auto plant = make_plant(
+      own_model("hydraulic_actuator", "force", "k*(in_Pa - out_Pa)", "", std::to_string(0.000633)));
+  ASSERT_DOUBLE_EQ(*plant->parameter("area_m2"), 0.000633);
+  plant->advance(2.0, 0.2);
+  EXPECT_GT(std::abs(plant->state()[2].value - plant->state()[3].value), 1e5);
+  EXPECT_NEAR(plant->position_m(), 0.305, 1e-9);
+}
+
+TEST(FormulaEffect, SeesThePositionInACommand) {
+  // y' = g (u - k y) with y held through each step of h: y = u/k (1 - (1 - g k h)^n)
+  auto plant = make_plant(own_model("velocity_servo", "command", "u_V - k*y_m", "", "40.0"));
+  plant->advance(2.0, 0.3);
+  const double left = std::pow(1.0 - 0.05 * 40.0 * 1e-3, 300);
+  EXPECT_NEAR(plant->position_m(), 2.0 / 40.0 * (1.0 - left), kAgree);
+}
+
+TEST(FormulaEffect, SeesTheAccelerationOfTheLastStep) {
+  // u constant, no speed yet: M a = gain u - k a, with the a of a step before
+  auto plant = make_plant(own_model("force_driven_axis", "force", "k*a_mps2", "", "50.0"));
+  *plant->parameter("damping_N_s_per_m") = 0.0;
+  plant->advance(20.0, 0.5);
+  const double before_mps = plant->speed_mps();
+  plant->advance(20.0, 0.1);
+  EXPECT_NEAR((plant->speed_mps() - before_mps) / 0.1, 35.0 * 20.0 / (100.0 + 50.0), 1e-9);
+}
+
+TEST(FormulaEffect, RemembersAFirstOrderLag) {
+  // y' = g (u + k z), z' = (u - z)/tau: z = u (1 - exp(-t/tau)) at the start of each step
+  auto plant = make_plant(
+      own_model("velocity_servo", "command", "u_V + k*z", "memory = \"(u_V - z)/0.2\"", "0.5"));
+  auto zero = plant->position_m();
+  plant->advance(2.0, 0.4);
+  double expected_m = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    expected_m += 1e-3 * 0.05 * 2.0 * (1.0 + 0.5 * (1.0 - std::exp(-i * 1e-3 / 0.2)));
+  }
+  EXPECT_NEAR(plant->position_m() - zero, expected_m, 1e-9);
+  plant->reset();
+  plant->advance(2.0, 0.4);
+  EXPECT_NEAR(plant->position_m() - zero, expected_m, 1e-9);
+}
+
+TEST(FormulaEffect, RemembersAHiddenLevelThatOnlyRises) {
+  // z' = |v|: the way gone, and a drag that grows with it
+  auto plant = make_plant(
+      own_model("force_driven_axis", "force", "k*z*v_mps", "memory = \"abs(v_mps)\"", "0.0"));
+  auto drags = make_plant(
+      own_model("force_driven_axis", "force", "k*z*v_mps", "memory = \"abs(v_mps)\"", "1000.0"));
+  double way_m = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    const double u_V = k / 250 % 2 == 0 ? 20.0 : -20.0;
+    const double from_m = drags->position_m();
+    plant->advance(u_V, 0.01);
+    drags->advance(u_V, 0.01);
+    way_m += std::abs(drags->position_m() - from_m);
+  }
+  // nearly steady: gain u = (d + k way) v
+  EXPECT_NEAR(drags->speed_mps() * (200.0 + 1000.0 * way_m), -35.0 * 20.0, 0.01 * 35.0 * 20.0);
+  EXPECT_GT(std::abs(plant->speed_mps()), 2.0 * std::abs(drags->speed_mps()));
+}
+
 const std::string kDrag = own_text("force", "k*v_mps^3", "0.0", "1e7");
 
 TEST(FormulaEffect, ChangesNotOneBitWhileItsParametersAreNeutral) {

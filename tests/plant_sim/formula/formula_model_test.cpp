@@ -87,7 +87,8 @@ TEST(FormulaModel, PrintsWhatItReadsBackTheSame) {
 TEST(FormulaModel, CanBeDeclaredByAProgram) {
   ModelFile model;
   *model.value("friction.coulomb_N") = 7.0;
-  formula::FormulaEffect drag{"drag", "force", "k*v_mps^3", "", {{"k", "", 0.0, 1e7, 1e5, 0.0}}};
+  formula::FormulaEffect drag{"drag", "force", "k*v_mps^3", "", {{"k", "", 0.0, 1e7, 1e5, 0.0}},
+                              "",     {}};
   model.declare(drag, "here");
   *model.value("drag.k") = 2e4;
   EXPECT_EQ(*model.value("friction.coulomb_N"), 7.0);

@@ -20,13 +20,15 @@ double value(const std::string& text, double x, double y, double k) {
       formula::record_formula(text, {"x", "y"}, {"k"}, "here");
   formula::ExpressionEvaluator<double> run(view_of(program));
   run.set_parameters(&k);
-  const double alone = run(x, y);
+  const formula::Signals<double> at{x, y};
+  const double alone = run(at.data());
 
   formula::ExpressionEvaluator<Simd> lanes(view_of(program));
   Simd many = 0.25;
   many.set(5, k);
   lanes.set_parameters(&many);
-  const double among = lanes(Simd(x), Simd(y))[5];
+  const formula::Signals<Simd> every{Simd(x), Simd(y)};
+  const double among = lanes(every.data())[5];
   EXPECT_TRUE(among == alone || (std::isnan(among) && std::isnan(alone)) ||
               std::abs(among - alone) <= 1e-12 * std::abs(alone))
       << text;
@@ -87,9 +89,9 @@ std::string refused(const std::string& formula) {
 TEST(Formula, IsRefusedWithPositionAndTokenWhenItDoesNotParse) {
   const std::string at = "own.toml: [formula_effects.own] formula: ";
   EXPECT_EQ(refused("k*vmps"), at + "unknown name vmps at character 3, did you mean v_mps?; "
-                                    "allowed: y_m, v_mps, k, pi, if, abs, sign, sqrt, exp, ln, "
-                                    "log10, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, "
-                                    "floor, atan2, min, max");
+                                    "allowed: u_V, y_m, v_mps, x_m, in_Pa, out_Pa, a_mps2, k, "
+                                    "pi, if, abs, sign, sqrt, exp, ln, log10, sin, cos, tan, "
+                                    "asin, acos, atan, sinh, cosh, tanh, floor, atan2, min, max");
   EXPECT_EQ(refused("k*(v_mps"),
             at + "does not parse at character 9, near \")\": unclosed parenthesis");
   EXPECT_EQ(refused("k*v_mps)"),
@@ -135,8 +137,8 @@ TEST(Formula, SurvivesAnyText) {
 
 TEST(Formula, IsRefusedWhenItActsThoughItsParametersAreNeutral) {
   const std::string at = "own.toml: [formula_effects.own] formula: has influence when its ";
-  EXPECT_EQ(refused("(k + 1)*v_mps"), at + "parameters are neutral: -2 at y_m = 0, v_mps = -2, "
-                                           "k = 0; allowed: 0");
+  EXPECT_EQ(refused("(k + 1)*v_mps"), at + "parameters are neutral: -2 at v_mps = -2, k = 0; "
+                                           "allowed: 0");
   EXPECT_THAT(refusal_of(plant_text("velocity_servo") + own_text("command", "k*u_V")),
               HasSubstr("neutral: 0 at u_V = -10, k = 0; allowed: u_V itself"));
   EXPECT_EQ(refusal_of(plant_text("velocity_servo") + own_text("command", "u_V + k")), "");
@@ -147,8 +149,8 @@ TEST(Formula, IsRefusedWithThePlaceWhereItIsNotFinite) {
   const std::string at = "own.toml: [formula_effects.own] formula: is ";
   const std::string allowed =
       "; allowed: finite values: bound the parameters, or guard with max() or if()";
-  EXPECT_EQ(refused("k/y_m"), at + "infinite at y_m = 0, v_mps = -2, k = 5e+05" + allowed);
-  EXPECT_EQ(refused("k*sqrt(v_mps)"), at + "no number at y_m = 0, v_mps = -2, k = 5e+05" + allowed);
+  EXPECT_EQ(refused("k/y_m"), at + "infinite at y_m = 0, k = 5e+05" + allowed);
+  EXPECT_EQ(refused("k*sqrt(v_mps)"), at + "no number at v_mps = -2, k = 5e+05" + allowed);
   EXPECT_THAT(refused("v_mps/k - v_mps/k"), HasSubstr("k = 0"));
   EXPECT_THAT(refused("exp(k*v_mps) - 1"), HasSubstr("infinite at"));
   EXPECT_EQ(refused("k/max(y_m, 0.01)"), "");
@@ -156,6 +158,35 @@ TEST(Formula, IsRefusedWithThePlaceWhereItIsNotFinite) {
   EXPECT_EQ(refused("k*sqrt(y_m)"), "");  // the stroke begins at 0
   EXPECT_THAT(refusal_of(plant_text("force_driven_axis") + own_text("force", "k*sqrt(y_m)")),
               HasSubstr("no number at y_m = -2"));  // an axis goes either way
+}
+
+TEST(Formula, ReadsTheSignalsThatThePlantHas) {
+  EXPECT_EQ(refused("k*u_V*y_m*v_mps*x_m*(in_Pa - out_Pa)*1e-9"), "");
+  EXPECT_EQ(refused("k*a_mps2"), "");
+  EXPECT_THAT(refused("k*q_m3ps"), HasSubstr("unknown name q_m3ps"));  // no orifice's flow
+  EXPECT_THAT(refusal_of(plant_text("force_driven_axis") + own_text("force", "k*in_Pa")),
+              HasSubstr("unknown name in_Pa"));
+  EXPECT_THAT(refusal_of(plant_text("velocity_servo") + own_text("command", "u_V + k*in_Pa")),
+              HasSubstr("unknown name in_Pa"));
+  EXPECT_EQ(refusal_of(plant_text("velocity_servo") + own_text("sensor", "y_m + k*v_mps*x_m")), "");
+  EXPECT_THAT(refusal_of(plant_text("hydraulic_actuator") + own_text("force", "k*z")),
+              HasSubstr("unknown name z"));
+}
+
+TEST(Formula, IsRefusedWithAMemoryThatMakesNoSense) {
+  const auto with_memory = [](const std::string& formula, const std::string& memory) {
+    return refusal_of(plant_text("force_driven_axis") +
+                      "[formula_effects.own]\nsite = \"force\"\n" + "formula = \"" + formula +
+                      "\"\nmemory = \"" + memory + "\"\n" +
+                      parameter_text("k", "0.0", "100.0", "1.0", "0.0") +
+                      parameter_text("tau_s", "0.01", "10.0", "1.0", "0.1"));
+  };
+  EXPECT_EQ(with_memory("k*z", "(abs(v_mps) - z)/tau_s"), "");
+  EXPECT_THAT(with_memory("k*v_mps", "(abs(v_mps) - z)/tau_s"),
+              HasSubstr("memory: is not in the formula"));
+  EXPECT_THAT(with_memory("k*z", "(abs(v_mps) - zz)/tau_s"), HasSubstr("memory: unknown name zz"));
+  EXPECT_THAT(with_memory("k*z", "(v_mps - z)/(tau_s - 1)"), HasSubstr("memory: is "));
+  EXPECT_THAT(with_memory("k*z", "v_mps - z"), HasSubstr("parameters.tau_s: is not in the"));
 }
 
 TEST(Formula, IsRefusedWithADeclarationThatMakesNoSense) {

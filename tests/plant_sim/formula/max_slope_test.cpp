@@ -14,7 +14,7 @@ constexpr VariableRange kSpeeds{-1e5, 1e5};
 TEST(MaxSlope, AStiffnessThatGrowsWithTheSpeedIsThatOfTheSpeedAtHand) {
   MaxSlope<double> found;
   // dF/dy = 400 v, dF/dv = 400 y
-  found.prepare(kStroke, kSpeeds, [](double y, double v) { return 400.0 * y * v; });
+  found.include(kStroke, kSpeeds, [](double y, double v) { return 400.0 * y * v; });
   EXPECT_NEAR(found.stiffness_N_per_m(), 400.0 * 1e5, 1e3);
   for (const double v_mps : {-0.3, 0.01, 2.0}) {
     const double own = 400.0 * std::abs(v_mps);
@@ -26,7 +26,7 @@ TEST(MaxSlope, AStiffnessThatGrowsWithTheSpeedIsThatOfTheSpeedAtHand) {
 
 TEST(MaxSlope, ASpringIsAsStiffAtAnySpeed) {
   MaxSlope<double> found;
-  found.prepare(kStroke, kSpeeds, [](double y, double) { return 3e4 * y; });
+  found.include(kStroke, kSpeeds, [](double y, double) { return 3e4 * y; });
   for (const double v_mps : {0.0, 0.3, -50.0}) {
     EXPECT_NEAR(found.stiffness_N_per_m(v_mps), 3e4, 1.0) << v_mps;
   }
