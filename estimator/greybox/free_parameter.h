@@ -18,9 +18,12 @@ namespace estimator::greybox {
 enum class ParameterScale { linear, logarithmic, reciprocal };
 
 inline constexpr int kEveryRefinement = 1000;
+inline constexpr char kInRecord = '@';
 
 struct FreeParameter {
-  std::string name;  ///< "damping_N_s_per_m", "friction.coulomb_N"
+  /// "damping_N_s_per_m", "friction.coulomb_N"; with "@NAME" behind it in the record of that name
+  /// alone, where it has priority.
+  std::string name;
   ParameterScale scale = ParameterScale::linear;
   double unit = 1.0;
   double lower = 0.0;  ///< bounds of theta

@@ -24,12 +24,14 @@ ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const 
       predicted_{std::vector<double>(record.size()), std::vector<double>(record.size()),
                  std::vector<double>(record.size())} {
   for (const FreeParameter& parameter : parameters_) {
-    const auto index = ensemble_->find(parameter.name);
-    const auto number = index ? std::nullopt : schedule_.find(parameter.name);
-    if (!index && !number) {
-      throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
-    }
-    slots_.push_back({index.value_or(number.value_or(0)), number.has_value()});
+    const std::size_t at = std::min(parameter.name.find(kInRecord), parameter.name.size());
+    const std::string name = parameter.name.substr(0, at);
+    const auto index = ensemble_->find(name);
+    const auto number = index ? std::nullopt : schedule_.find(name);
+    if (!index && !number) throw config::schema::bad_config(model.name, "has no parameter " + name);
+    const bool here =
+        name.size() == parameter.name.size() || parameter.name.substr(at + 1) == record.name;
+    slots_.push_back({index.value_or(number.value_or(0)), number.has_value(), !here});
   }
 }
 
@@ -52,6 +54,7 @@ void ObserverSimulation::residuals(const Eigen::MatrixXd& points, const Eigen::M
 
 void ObserverSimulation::take(const Eigen::MatrixXd& points) {
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    if (slots_[p].of_other_record) continue;
     for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
       const double theta = points(static_cast<Eigen::Index>(p), std::min(lane, points.cols() - 1));
       const double value = parameters_[p].to_physical(theta);

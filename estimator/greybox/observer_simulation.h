@@ -89,6 +89,7 @@ class ObserverSimulation {
   struct Slot {
     std::size_t index = 0;
     bool of_change = false;
+    bool of_other_record = false;
   };
   std::vector<Slot> slots_;
   std::size_t position_;  ///< state of the ensemble

@@ -11,6 +11,10 @@ std::string change_words(const selection::ParameterChange& change) {
   const auto words = [&](double value, double error) {
     return config::units::words(config::units::quantity(change.parameter, value, error));
   };
+  if (change.kind == selection::ChangeKind::record) {
+    return change.parameter + " is " + words(change.to, change.to_error) + " in " + change.record +
+           " and " + words(change.from, change.from_error) + " in the other records";
+  }
   std::string text = change.parameter + " goes from " + words(change.from, change.from_error) +
                      " to " + words(change.to, change.to_error);
   switch (change.kind) {
@@ -20,6 +24,7 @@ std::string change_words(const selection::ParameterChange& change) {
       return text + fmt::format(" between {:.1f} and {:.1f} s", change.at_s,
                                 change.at_s + change.duration_s);
     case selection::ChangeKind::exponential:
+    case selection::ChangeKind::record:
       break;
   }
   return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);

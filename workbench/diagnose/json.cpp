@@ -65,17 +65,19 @@ ordered_json refused_of(const selection::StructureSearch& search) {
 ordered_json changing_of(const selection::Diagnosis& d) {
   ordered_json changes = ordered_json::array();
   for (const selection::ParameterChange& change : d.changing) {
-    changes.push_back({{"parameter", change.parameter},
-                       {"kind", selection::to_string(change.kind)},
-                       {"at_s", number_or_null(change.at_s)},
-                       {"duration_s", number_or_null(change.duration_s)},
-                       {"from", number_or_null(change.from)},
-                       {"to", number_or_null(change.to)},
-                       {"std_error",
-                        {{"at_s", number_or_null(change.at_error_s)},
-                         {"from", number_or_null(change.from_error)},
-                         {"to", number_or_null(change.to_error)}}},
-                       {"rivals", change.rivals}});
+    changes.push_back(
+        {{"parameter", change.parameter},
+         {"kind", selection::to_string(change.kind)},
+         {"record", change.record.empty() ? ordered_json() : ordered_json(change.record)},
+         {"at_s", number_or_null(change.at_s)},
+         {"duration_s", number_or_null(change.duration_s)},
+         {"from", number_or_null(change.from)},
+         {"to", number_or_null(change.to)},
+         {"std_error",
+          {{"at_s", number_or_null(change.at_error_s)},
+           {"from", number_or_null(change.from_error)},
+           {"to", number_or_null(change.to_error)}}},
+         {"rivals", change.rivals}});
   }
   return changes;
 }
@@ -117,6 +119,12 @@ ordered_json curve_of(const greybox::LawCurve& curve) {
   return json;
 }
 
+/// The points of a curve, whose values are the parameters; null for a formula.
+ordered_json table_of(const plant_sim::formula::FormulaEffect& effect) {
+  if (!effect.curve) return nullptr;
+  return {{"over", effect.curve->over}, {"times", effect.curve->times}, {"x", effect.curve->x}};
+}
+
 ordered_json laws_of(const DiagnosisReport& outcome) {
   ordered_json laws = ordered_json::array();
   for (const LearnedLaw& learned : learned_laws(outcome)) {
@@ -136,7 +144,8 @@ ordered_json laws_of(const DiagnosisReport& outcome) {
                     {"what", effect.what},
                     {"site", effect.site},
                     {"variables", learned.law->variables},
-                    {"formula", effect.formula},
+                    {"formula", effect.equation()},
+                    {"table", table_of(effect)},
                     {"parameters", parameters},
                     {"rms_heldout_m", number_or_null(outcome.diagnosis.rms_after_m)},
                     {"curve", curve_of(learned.curve)}});

@@ -59,7 +59,7 @@ Plot law_plot(const DiagnosisReport& outcome, const LearnedLaw& learned) {
   }
   line.kind = present::PlotKind::line;
   plot.series.push_back(std::move(line));
-  plot.caption = learned.law->effect.what + ": " + learned.law->effect.formula +
+  plot.caption = learned.law->effect.what + ": " + learned.law->effect.equation() +
                  ". The band is two standard errors; it ends where the records do.";
   if (!axes.held.empty()) plot.caption += " " + axes.held;
   return plot;

@@ -85,7 +85,7 @@ std::string law_words(const selection::Law& law) {
   const plant_sim::formula::FormulaSite* site =
       plant_sim::formula::find_formula_site(law.effect.site);
   return law.effect.what + ": " + (site == nullptr ? law.effect.site : site->result) + " = " +
-         law.effect.formula;
+         law.effect.equation();
 }
 
 std::string learned_words(const selection::Diagnosis& d) {

@@ -110,7 +110,10 @@ double error_of(const FitSummary& fitted, const Eigen::VectorXd& errors, const s
 
 }  // namespace
 
-std::string name_of(const ChangeScore& score) { return "change." + score.parameter.name; }
+std::string name_of(const ChangeScore& score) {
+  const std::string in = score.record.empty() ? "" : kInRecord + score.record;
+  return "change." + score.parameter.name + in;
+}
 
 ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage,
                         const ChangeScore& score) {

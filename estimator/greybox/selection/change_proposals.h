@@ -9,7 +9,7 @@
 
 namespace estimator::greybox::selection {
 
-/// Name of a change among a model's effects: "change.mass_kg".
+/// Name of a change among a model's effects: "change.mass_kg", "change.mass_kg@b.csv".
 [[nodiscard]] std::string name_of(const ChangeScore& score);
 
 /// A change with its numbers, ready to be fitted.

@@ -163,6 +163,12 @@ class Course {
   double throughout_nats_ = 0.0;
 };
 
+void sort_by_gain(std::vector<ChangeScore>& scores) {
+  std::stable_sort(scores.begin(), scores.end(), [](const ChangeScore& a, const ChangeScore& b) {
+    return a.gain_nats > b.gain_nats;
+  });
+}
+
 std::vector<Index> step_times(const Dataset& record) {
   std::vector<Index> grid;
   const auto samples = static_cast<Index>(record.size());
@@ -180,6 +186,8 @@ const char* to_string(ChangeKind kind) {
       return "ramp";
     case ChangeKind::exponential:
       return "exponential";
+    case ChangeKind::record:
+      return "record";
     case ChangeKind::step:
       break;
   }
@@ -232,9 +240,44 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     }
     scores.push_back(warming);
   }
-  std::stable_sort(scores.begin(), scores.end(), [](const ChangeScore& a, const ChangeScore& b) {
-    return a.gain_nats > b.gain_nats;
-  });
+  sort_by_gain(scores);
+  return scores;
+}
+
+std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
+  const FitDataset& data = stage.context.problem.data;
+  std::vector<std::string> names;
+  for (const Dataset& record : data.records) {
+    if (std::find(names.begin(), names.end(), record.name) == names.end())
+      names.push_back(record.name);
+  }
+  if (names.size() < 2 || stage.model.fitted.jacobian.size() == 0) return {};
+  if (names.size() == 2) names.erase(names.begin());
+  const Columns columns = columns_of(stage);
+  const auto own = static_cast<Index>(stage.model.fitted.parameters.size());
+  const MatrixXd basis = basis_of(columns.values.leftCols(own));
+  const VectorXd rest = columns.rest - basis * (basis.transpose() * columns.rest);
+  std::vector<ChangeScore> scores;
+  for (Index c = 0; c < columns.values.cols() && !stage.context.cancelled(); ++c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (columns.parameters[i].name.find(kInRecord) != std::string::npos) continue;
+    const VectorXd column = columns.values.col(c);
+    const Course course(basis, rest, column, columns.absent[i]);
+    for (const std::string& name : names) {
+      VectorXd within = VectorXd::Zero(data.size());
+      for (std::size_t r = 0; r < data.records.size(); ++r) {
+        if (data.records[r].name != name) continue;
+        within
+            .segment(static_cast<Index>(data.starts[r]), static_cast<Index>(data.records[r].size()))
+            .setOnes();
+      }
+      ChangeScore score{columns.parameters[i], columns.absent[i], ChangeKind::record};
+      score.record = name;
+      course.score(within, score);
+      scores.push_back(std::move(score));
+    }
+  }
+  sort_by_gain(scores);
   return scores;
 }
 

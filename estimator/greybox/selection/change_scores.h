@@ -25,10 +25,15 @@ struct ChangeScore {
   double by = 0.0;               ///< change of the search value, estimated
   double gain_nats = 0.0;        ///< over the same effect throughout, where it is absent
   double throughout_nats = 0.0;  ///< gain of an absent effect throughout, without its change
+  std::string record{};          ///< of ChangeKind::record: where the parameter differs
 };
 
 /// The likeliest time of each kind for every parameter, best first; none for several records.
 /// `stage` has its Jacobian.
 [[nodiscard]] std::vector<ChangeScore> change_scores(const InnovationStage& stage);
+
+/// Every parameter with each record in which it may differ from its value in the others, best
+/// first; none for a single record. Of two records the second differs.
+[[nodiscard]] std::vector<ChangeScore> record_scores(const InnovationStage& stage);
 
 }  // namespace estimator::greybox::selection

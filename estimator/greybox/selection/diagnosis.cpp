@@ -14,6 +14,7 @@
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/record_differences.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -208,6 +209,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   } else {
     weigh_innovations(context, search, std::move(start), result);
   }
+  if (!wrong_record && !context.cancelled()) (void)find_record_differences(search, first, result);
   if (result.verdict == Verdict::unexplained && !wrong_record && !context.cancelled()) {
     if (!date_changes(search, first, result)) learn_laws(search, first, result);
   }

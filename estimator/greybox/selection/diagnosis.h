@@ -74,7 +74,8 @@ struct Diagnosis {
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
-  /// Parameters that change within the record: Verdict::changing where they explain it.
+  /// Parameters that change within the record, or between records: Verdict::changing where they
+  /// explain it.
   std::vector<ParameterChange> changing;
   std::optional<RepeatedMotion>
       repetition;         ///< repetition of the final model's error, where the motion repeats

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/greybox/selection/residual_input.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
 
@@ -70,7 +69,8 @@ std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
                    [](const Attempt& a, const Attempt& b) { return a.gain_nats > b.gain_nats; });
   std::vector<CurveGain> gains;
   for (const Attempt& attempt : attempts) {
-    gains.push_back({site_of(attempt.input), attempt.variable->name, attempt.gain_nats});
+    gains.push_back(
+        {site_of(attempt.input), attempt.variable->name, attempt.gain_nats, attempt.input});
   }
   return gains;
 }

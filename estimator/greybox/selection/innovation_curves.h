@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/residual_input.h"
 
 namespace estimator::greybox::selection {
 
@@ -13,6 +14,7 @@ struct CurveGain {
   std::string site;      ///< "flow", "gain", "force"
   std::string variable;  ///< "y", "v", "u", "speed", ...
   double gain_nats = 0.0;
+  ResidualInput input = ResidualInput::flow;
 };
 
 /// One per site and variable, best first. `stage` has its Jacobian.

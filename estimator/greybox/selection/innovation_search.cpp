@@ -286,18 +286,6 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
   return true;
 }
 
-SearchContext without_holdouts(SearchContext context) {
-  if (context.problem.data.has_holdouts()) {
-    std::vector<Dataset>& records = context.problem.data.records;
-    const bool interpolated = context.problem.data.command_is_interpolated;
-    records.resize(context.problem.data.fitted_records);
-    context.problem.data = fit_dataset(std::move(records), {});
-    context.problem.data.command_is_interpolated = interpolated;
-    assume_noise_floor(context.problem.data);
-  }
-  return context;
-}
-
 /// Nats that the lines of a search have gained, each when it was taken.
 double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
   double sum_nats = 0.0;
@@ -336,6 +324,18 @@ void note_gains(InnovationSearch& search, const InnovationStage& final) {
 }
 
 }  // namespace
+
+SearchContext without_holdouts(SearchContext context) {
+  if (context.problem.data.has_holdouts()) {
+    std::vector<Dataset>& records = context.problem.data.records;
+    const bool interpolated = context.problem.data.command_is_interpolated;
+    records.resize(context.problem.data.fitted_records);
+    context.problem.data = fit_dataset(std::move(records), {});
+    context.problem.data.command_is_interpolated = interpolated;
+    assume_noise_floor(context.problem.data);
+  }
+  return context;
+}
 
 InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
                                     const SearchBranch& held) {

@@ -72,6 +72,9 @@ struct InnovationSearch {
                                                   const ModelStage& first,
                                                   const SearchBranch& held);
 
+/// The context without records that only score.
+[[nodiscard]] SearchContext without_holdouts(SearchContext context);
+
 /// Adds spectral lines to the stage that a search has reached; its effects stay. Sets the search's
 /// rounds and inexact_nats; `search.before` is the stage from which gains count.
 void add_lines(const SearchContext& context, InnovationSearch& search, InnovationStage& stage);

@@ -40,14 +40,20 @@ FormulaEffect::Parameter size(const std::string& name, double typical, Sign sign
 class Dictionary {
  public:
   Dictionary(const plant_sim::ModelFile& model, const FitDataset& data)
-      : model_(model), rig_(rig_scale(model, data)) {}
+      : model_(model), model_copy_(model), rig_(rig_scale(model, data)) {}
 
-  std::vector<Law> laws() {
+  std::vector<Law> laws(LawChoice choice) {
     add_forces();
     add_openings();
     add_commands();
     add_leakage();
     add_readings();
+    if (choice == LawChoice::unexplained) {
+      add_bent_forces();
+      add_saturations();
+      add_leakage_along_stroke();
+      add_mount();
+    }
     return std::move(laws_);
   }
 
@@ -120,12 +126,96 @@ class Dictionary {
         {"y"});
   }
 
+  /// A length, speed or other width of a law's bend.
+  static FormulaEffect::Parameter width(const std::string& name, double typical) {
+    return {name,
+            "width",
+            rounded(typical / 10.0),
+            rounded(10.0 * typical),
+            rounded(typical),
+            rounded(2.0 * typical)};
+  }
+
+  void add_bent_forces() {
+    const double force_N = kTypicalForce * rig_.force_N;
+    const double v = rig_.speed_mps;
+    const double y = rig_.length_m;
+    add("smooth_friction", "friction that rises smoothly with the speed", "force",
+        "force_N * tanh(v_mps / width_mps)",
+        {size("force_N", force_N, Sign::positive), width("width_mps", 0.3 * v)}, {"v"});
+    add("exponential_damping", "damping that rises exponentially with the speed", "force",
+        "force_N * sign(v_mps) * (exp(min(abs(v_mps) / width_mps, 30)) - 1)",
+        {size("force_N", 0.3 * force_N, Sign::positive), width("width_mps", v)}, {"v"});
+    add("loose_spring", "spring with a gap in which it is without force", "force",
+        "stiffness_N_per_m * (max(y_m - rest_m - gap_m, 0) + min(y_m - rest_m + gap_m, 0))",
+        {size("stiffness_N_per_m", force_N / y, Sign::positive), rest(), width("gap_m", 0.5 * y)},
+        {"y"});
+    add("yielding_spring", "spring whose force saturates", "force",
+        "force_N * tanh((y_m - rest_m) / width_m)",
+        {size("force_N", force_N, Sign::positive), rest(), width("width_m", 0.5 * y)}, {"y"});
+    add("command_damping", "damping that grows with the command", "force",
+        "coefficient_N_s_per_m_V * v_mps * abs(u_V)",
+        {size("coefficient_N_s_per_m_V", force_N / (v * rig_.command_V), Sign::positive)},
+        {"v", "u"});
+    if (!plant_sim::hydraulics_of(model_copy_)) return;
+    add("pressure_friction", "friction of seals that grows with the pressures", "force",
+        fmt::format("area_m2 * (in_Pa + out_Pa) * tanh(v_mps / {})", rounded(0.02 * v)),
+        {size("area_m2", force_N / rig_.pressure_Pa, Sign::positive)}, {"v", "pressure"});
+  }
+
+  void add_saturations() {
+    const double per_V = opening_per_V();
+    if (!(per_V > 0.0)) return;
+    const double full = rounded(per_V * rig_.most_command_V);
+    const auto add_one = [&](const char* name, const char* what, const std::string& side) {
+      add(name, what, "opening",
+          fmt::format("x_m / (1 + loss_ratio * max({}, 0) / {})", side, full),
+          {size("loss_ratio", kTypicalRatio, Sign::positive, kMostRatio / kTypicalRatio)},
+          {"u", "direction"});
+    };
+    add_one("extending_saturation", "flow that saturates when extending", "x_m");
+    add_one("retracting_saturation", "flow that saturates when retracting", "(-x_m)");
+  }
+
+  void add_leakage_along_stroke() {
+    const double conductance =
+        kTypicalForce * rig_.area_m2 * rig_.speed_mps / (0.3 * rig_.pressure_Pa);
+    const double y = rig_.length_m;
+    for (const bool outwards : {true, false}) {
+      add(outwards ? "leakage_outwards" : "leakage_inwards",
+          outwards ? "leakage that grows as the rod extends, a worn bore"
+                   : "leakage that grows as the rod retracts, a worn bore",
+          "leakage",
+          fmt::format("coefficient_m2ps_per_Pa * (in_Pa - out_Pa) * max({}(y_m - {}), 0)",
+                      outwards ? "" : "-", rounded(rig_.centre_m + (outwards ? -2.0 : 2.0) * y)),
+          {size("coefficient_m2ps_per_Pa", conductance / (2.0 * y), Sign::positive)},
+          {"y", "pressure"});
+    }
+    add("position_leakage", "leakage about a position, a scored bore", "leakage",
+        "conductance_m3ps_per_Pa * (in_Pa - out_Pa) * exp(-((y_m - rest_m) / width_m)^2)",
+        {size("conductance_m3ps_per_Pa", conductance, Sign::positive), rest(), width("width_m", y)},
+        {"y", "pressure"});
+  }
+
+  void add_mount() {
+    constexpr double kRate_per_s = 12.0;  // of a motion at 2 Hz
+    add("mount_compliance", "sensor mount that yields to the acceleration", "sensor",
+        "y_m + compliance_s2 * a_mps2",
+        {size("compliance_s2", 1e-3 * rig_.length_m / (kRate_per_s * rig_.speed_mps), Sign::both)},
+        {"acceleration"});
+  }
+
+  /// Opening per command; 0 for a plant without an opening.
+  [[nodiscard]] double opening_per_V() {
+    if (const auto oil = plant_sim::hydraulics_of(model_copy_)) return oil->valve_gain_m_per_V;
+    const double* const servo = model_copy_.value("gain_mps_per_V");
+    return servo == nullptr ? 0.0 : *servo;
+  }
+
   void add_openings() {
-    plant_sim::ModelFile model = model_;
-    const auto oil = plant_sim::hydraulics_of(model);
-    const double* const servo = model.value("gain_mps_per_V");
-    if (!oil && servo == nullptr) return;
-    const double full = rounded((oil ? oil->valve_gain_m_per_V : *servo) * rig_.most_command_V);
+    const double per_V = opening_per_V();
+    if (!(per_V > 0.0)) return;
+    const double full = rounded(per_V * rig_.most_command_V);
     add("gain_curvature", "gain that changes with the square of the opening", "opening",
         fmt::format("x_m * (1 + curvature_ratio * (x_m / {})^2)", full),
         {size("curvature_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
@@ -178,14 +268,16 @@ class Dictionary {
   }
 
   const plant_sim::ModelFile& model_;
+  plant_sim::ModelFile model_copy_;  ///< for look-ups by name
   RigScale rig_;
   std::vector<Law> laws_;
 };
 
 }  // namespace
 
-std::vector<Law> law_dictionary(const plant_sim::ModelFile& model, const FitDataset& data) {
-  return Dictionary(model, data).laws();
+std::vector<Law> law_dictionary(const plant_sim::ModelFile& model, const FitDataset& data,
+                                LawChoice choice) {
+  return Dictionary(model, data).laws(choice);
 }
 
 }  // namespace estimator::greybox::selection

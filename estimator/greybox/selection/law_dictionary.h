@@ -16,9 +16,14 @@ struct Law {
   std::vector<std::string> variables;  ///< "y", "v", "u", "speed", "direction", "pressure"
 };
 
+/// Laws of the dictionary: those that are held against named effects, or beside them the forms that
+/// come near to effects of the library, for records that no effect explains.
+enum class LawChoice { against_effects, unexplained };
+
 /// Those that the plant has a site for, their sizes scaled to the rig. A law whose name the model
 /// has given to a formula of its own is left out.
 [[nodiscard]] std::vector<Law> law_dictionary(const plant_sim::ModelFile& model,
-                                              const FitDataset& data);
+                                              const FitDataset& data,
+                                              LawChoice choice = LawChoice::unexplained);
 
 }  // namespace estimator::greybox::selection

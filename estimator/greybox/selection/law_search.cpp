@@ -25,8 +25,8 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
   return result;
 }
 
-std::vector<Law> laws_at(const SearchContext& context, const std::string& site) {
-  std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
+std::vector<Law> laws_at(const SearchContext& context, const std::string& site, LawChoice choice) {
+  std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data, choice);
   if (!site.empty())
     std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
   return dictionary;
@@ -36,7 +36,7 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site) 
 
 bool law_competes(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {
-  const std::vector<Law> dictionary = laws_at(context, site);
+  const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);
   if (dictionary.empty() || context.cancelled()) return false;
   const std::vector<InnovationStage> others =
       exchanges_of(with_laws(context, dictionary, {}), named, 0);
@@ -47,8 +47,8 @@ bool law_competes(const SearchContext& context, const std::string& site,
 
 std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first,
                                      const std::string& site,
-                                     const std::vector<std::string>& effects) {
-  const std::vector<Law> dictionary = laws_at(context, site);
+                                     const std::vector<std::string>& effects, LawChoice choice) {
+  const std::vector<Law> dictionary = laws_at(context, site, choice);
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
   search.innovations = search_innovations(search.context, first, {});

@@ -25,9 +25,10 @@ struct LawSearch {
 
 /// None where one or two laws leave physics unexplained, or none is of use. `first`: the model as
 /// given, fitted with the weak observer. `site`: where laws are looked for; empty: everywhere.
-/// `effects` of the library compete with them.
+/// `effects` of the library compete with them; `choice` of laws.
 [[nodiscard]] std::optional<LawSearch> search_laws(const SearchContext& context,
                                                    const ModelStage& first, const std::string& site,
-                                                   const std::vector<std::string>& effects);
+                                                   const std::vector<std::string>& effects,
+                                                   LawChoice choice);
 
 }  // namespace estimator::greybox::selection

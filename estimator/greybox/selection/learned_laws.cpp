@@ -7,6 +7,7 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/law_search.h"
+#include "estimator/greybox/selection/learned_curve.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 
 namespace estimator::greybox::selection {
@@ -29,7 +30,8 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   conclude(found.context, found.context, first, found.innovations, learned);
   const auto is_size = [&](const ParameterValue& p) {
     return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {
-      return p.name == law.effect.name + "." + law.effect.parameters.front().name;
+      return !law.effect.curve &&
+             p.name == law.effect.name + "." + law.effect.parameters.front().name;
     });
   };
   for (const ParameterValue& p : learned.parameters) {
@@ -72,14 +74,31 @@ std::string shared_site(const std::vector<std::string>& effects) {
 
 }  // namespace
 
-void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
-  const std::optional<LawSearch> found = search_laws(context, first, "", result.search.final.added);
-  if (!found) return;
+namespace {
+
+/// Takes the laws of a search where they leave clearly less than `result`.
+bool take_better(const SearchContext& context, const ModelStage& first,
+                 const std::optional<LawSearch>& found, Diagnosis& result) {
   Diagnosis learned;
-  if (take_laws(context, first, *found, result, learned) &&
-      learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m) {
-    result = std::move(learned);
+  if (!found || !take_laws(context, first, *found, result, learned) ||
+      !(learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m)) {
+    return false;
   }
+  result = std::move(learned);
+  return true;
+}
+
+}  // namespace
+
+void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+  const ModelStage named = result.search.final;
+  if (take_better(context, first,
+                  search_laws(context, first, "", named.added, LawChoice::unexplained), result))
+    return;
+  // a curve is more than a formula has to say: it comes last
+  if (take_better(context, first, search_curve(context, first), result)) return;
+  if (named.added.empty() || named.added.size() >= kStandIn) return;
+  (void)take_better(context, first, search_curve(context, named), result);
 }
 
 bool prefer_law(const SearchContext& context, const ModelStage& first,
@@ -94,7 +113,8 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   if (!several && !law_competes(context, site, innovations)) return false;
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
-      search_laws(context, first, site, several ? added : std::vector<std::string>());
+      search_laws(context, first, site, several ? added : std::vector<std::string>(),
+                  LawChoice::against_effects);
   return found && found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);

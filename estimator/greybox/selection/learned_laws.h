@@ -6,7 +6,7 @@
 
 namespace estimator::greybox::selection {
 
-/// Takes laws where no effect explains the record and they leave clearly less.
+/// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result);
 
 /// Takes a law where it is clearly likelier than the effects found, at the site of a single one, or

@@ -1,4 +1,4 @@
-// A parameter that changes within a record.
+// A parameter that changes within a record, or from one record to another.
 #pragma once
 
 #include <limits>
@@ -9,10 +9,11 @@ namespace estimator::greybox::selection {
 
 enum class ChangeKind {
   step,
-  ramp,        ///< linear over `duration_s`
-  exponential  ///< with the time constant `duration_s`, as in warming up
+  ramp,         ///< linear over `duration_s`
+  exponential,  ///< with the time constant `duration_s`, as in warming up
+  record        ///< between records: in `record` it has another value than in the others
 };
-/// "step", "ramp", "exponential".
+/// "step", "ramp", "exponential", "record".
 [[nodiscard]] const char* to_string(ChangeKind kind);
 
 struct ParameterChange {
@@ -26,6 +27,7 @@ struct ParameterChange {
   double at_error_s = std::numeric_limits<double>::quiet_NaN();
   double from_error = std::numeric_limits<double>::quiet_NaN();
   double to_error = std::numeric_limits<double>::quiet_NaN();
+  std::string record{};  ///< name of the record where it differs; empty: it changes within one
   /// Parameters whose change would explain the record about as well.
   std::vector<std::string> rivals{};
 };

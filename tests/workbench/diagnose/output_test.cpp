@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "config/schema/document.h"
+#include "plant_sim/formula/curve_effect.h"
 #include "tests/workbench/diagnose/example_outcome.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/progress_line.h"
@@ -63,12 +64,48 @@ TEST(DiagnosisJson, MissingNumbersAreNull) {
   EXPECT_TRUE(j["candidates"].empty());
 }
 
+TEST(DiagnosisJson, ACurveHasItsPoints) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.better = plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/force_driven_axis.toml");
+  plant_sim::formula::FormulaEffect effect;
+  effect.name = "force_over_v";
+  effect.curve = {"v_mps", "", {-0.1, 0.0, 0.1}, {-5.0, 0.0, 5.0}};
+  derive_formula(effect);
+  d.better.declare(effect, "test");
+  *d.better.value("force_over_v.f3") = 7.0;
+  d.verdict = selection::Verdict::learned;
+  d.laws = {{effect, {"v"}}};
+  const json law = json::parse(to_json(outcome))["laws"][0];
+  EXPECT_EQ(law["formula"], "f(v_mps)");
+  EXPECT_EQ(law["table"], json::parse(R"({"over": "v_mps", "times": "", "x": [-0.1, 0.0, 0.1]})"));
+  EXPECT_EQ(law["parameters"]["f3"]["value"], 7.0);
+}
+
+TEST(DiagnosisJson, ADifferenceBetweenRecordsNamesTheRecord) {
+  ExampleReport outcome;
+  outcome.diagnosis.verdict = selection::Verdict::changing;
+  selection::ParameterChange change;
+  change.parameter = "mass_kg";
+  change.kind = selection::ChangeKind::record;
+  change.record = "b.csv";
+  change.at_s = std::nan("");
+  change.from = 40.0;
+  change.to = 50.0;
+  outcome.diagnosis.changing = {change};
+  const json one = json::parse(to_json(outcome))["changing"][0];
+  EXPECT_EQ(one["kind"], "record");
+  EXPECT_EQ(one["record"], "b.csv");
+  EXPECT_EQ(one["to"], 50.0);
+  EXPECT_TRUE(one["at_s"].is_null());
+}
+
 TEST(DiagnosisJson, ALawHasItsCurveAndWhatItsBlockNeeds) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
   d.better = plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/force_driven_axis.toml");
   const plant_sim::formula::FormulaEffect effect{
-      "cubic_damping", "force", "c * v_mps^3", "drag", {{"c", "size", 0.0, 1e6, 1e3, 0.0}}};
+      "cubic_damping", "force", "c * v_mps^3", "drag", {{"c", "size", 0.0, 1e6, 1e3, 0.0}}, "", {}};
   d.better.declare(effect, "test");
   *d.better.value("cubic_damping.c") = 800.0;
   d.verdict = selection::Verdict::learned;

@@ -1,0 +1,272 @@
+#include "estimator/greybox/selection/learned_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/rig_scale.h"
+#include "estimator/parallel.h"
+#include "plant_sim/formula/curve_effect.h"
+#include "plant_sim/hydraulics.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using plant_sim::formula::FormulaEffect;
+
+/// Sites and variables that are fitted, the likeliest first.
+constexpr std::size_t kTried = 3;
+constexpr std::size_t kFirstPoints = 8;
+/// The likeliest of these with other numbers of points.
+constexpr std::size_t kRefined = 2;
+constexpr std::size_t kFurtherPoints[] = {5, 12, 18, 26};
+/// Share of the samples beyond either end of a curve.
+constexpr double kTail = 0.002;
+/// A force of typical size as a share of the rig's greatest; a gain's share.
+constexpr double kTypicalForce = 0.03;
+constexpr double kTypicalRatio = 0.1;
+/// Share of what a curve has explained that others may gain beside it: between a few points it is a
+/// cubic, whatever the law.
+constexpr double kInexact = 0.02;
+/// Standard deviation of a curve's values about zero, in typical sizes.
+constexpr double kPriorSizes = 5.0;
+/// Largest value of a curve over its typical one.
+constexpr double kMost = 100.0;
+
+/// A curve's place: its site, the signal it goes over and the one that it is multiplied by.
+struct Place {
+  std::string site;
+  std::string over;
+  std::string times;
+  std::string variable;  ///< of the score test
+  double typical = 0.0;
+};
+
+std::string signal_of(const std::string& variable) {
+  if (variable == "y") return "y_m";
+  if (variable == "v" || variable == "speed" || variable == "direction") return "v_mps";
+  if (variable == "u") return "u_V";
+  return variable == "acceleration" ? "a_mps2" : "";
+}
+
+/// Opening per command of plants that have an opening; 0 for others.
+double opening_per_V(const plant_sim::ModelFile& given) {
+  plant_sim::ModelFile model = given;
+  if (const auto oil = plant_sim::hydraulics_of(model)) return oil->valve_gain_m_per_V;
+  const double* const servo = model.value("gain_mps_per_V");
+  return servo == nullptr ? 0.0 : *servo;
+}
+
+std::optional<Place> place_of(const SearchContext& context, const RigScale& rig,
+                              const CurveGain& curve) {
+  Place place{"force", signal_of(curve.variable), "", curve.variable, kTypicalForce * rig.force_N};
+  if (place.over.empty()) return {};
+  if (curve.input == ResidualInput::force) return place;
+  if (curve.input == ResidualInput::drag) {
+    place.times = "v_mps";
+    place.typical /= rig.speed_mps;
+    return place;
+  }
+  const double opening = opening_per_V(context.problem.model);
+  place.site = opening > 0.0 ? "opening" : "command";
+  const std::string own = opening > 0.0 ? "x_m" : "u_V";
+  if (place.over == "u_V") place.over = own;
+  if (curve.input == ResidualInput::gain) place.times = own;
+  const double full = (opening > 0.0 ? opening : 1.0) * rig.most_command_V;
+  place.typical = curve.input == ResidualInput::gain ? kTypicalRatio : kTypicalRatio * full;
+  return place;
+}
+
+/// All counted samples of a signal, ascending.
+std::vector<double> samples_of(const SearchContext& context, const std::string& signal) {
+  const FitDataset& data = context.problem.data;
+  const double per_V = opening_per_V(context.problem.model);
+  std::vector<double> all;
+  for (const Dataset& record : data.records) {
+    const Kinematics motion = kinematics(record, data.noise_floor_m);
+    for (std::size_t k = 0; k < record.size(); ++k) {
+      if (record.valid[k] == 0) continue;
+      const double value = signal == "y_m"     ? record.y_m[k]
+                           : signal == "v_mps" ? motion.speed_mps[k]
+                           : signal == "u_V"   ? record.u_V[k]
+                           : signal == "x_m"   ? per_V * record.u_V[k]
+                                               : motion.acceleration_mps2[k];
+      if (std::isfinite(value)) all.push_back(value);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Points half way between equal steps and equal shares of the samples; one at zero where the
+/// signal has both signs, since a law over it often bends there.
+std::vector<double> points_of(const std::vector<double>& sorted, std::size_t count) {
+  const auto quantile = [&](double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  };
+  const double low = quantile(kTail);
+  const double high = quantile(1.0 - kTail);
+  if (!(high > low)) return {};
+  std::vector<double> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    points.push_back(0.5 *
+                     (low + (high - low) * share + quantile(kTail + (1.0 - 2.0 * kTail) * share)));
+  }
+  if (low < 0.0 && high > 0.0) {
+    const auto nearest =
+        std::min_element(points.begin() + 1, points.end() - 1,
+                         [](double a, double b) { return std::abs(a) < std::abs(b); });
+    *nearest = 0.0;
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    if (!(points[i + 1] - points[i] > 1e-3 * (high - low))) return {};
+  }
+  return points;
+}
+
+std::string name_of(const Place& place) {
+  std::string name = place.site + "_over_" + place.over.substr(0, place.over.find('_'));
+  if (!place.times.empty()) name += "_times_" + place.times.substr(0, place.times.find('_'));
+  return name;
+}
+
+FormulaEffect effect_of(const Place& place, std::vector<double> points) {
+  FormulaEffect effect;
+  effect.name = name_of(place);
+  effect.site = place.site;
+  effect.what = "a curve, since no formula of the dictionary fits";
+  const std::vector<double> sizes(points.size(), place.typical);
+  effect.curve = {place.over, place.times, std::move(points), sizes};
+  derive_formula(effect);
+  for (FormulaEffect::Parameter& p : effect.parameters) {
+    p.min = -kMost * place.typical;
+    p.max = kMost * place.typical;
+  }
+  return effect;
+}
+
+struct Attempt {
+  Place place;
+  FormulaEffect effect;
+  SearchContext context;
+  InnovationStage stage;
+};
+
+/// The stage with the curve, which begins at zero.
+InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
+  ModelStage model = stage.model;
+  ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
+  const std::vector<plant_sim::EffectInfo> effects =
+      plant_sim::effects_of(attempt.context.problem.model);
+  std::vector<FreeParameter> own = effect_parameters(effects.back(), kEveryRefinement);
+  const Place& place = attempt.place;
+  const bool dissipates = place.site == "force" && place.over == "v_mps" && place.times.empty();
+  for (std::size_t i = 0; i < own.size() && dissipates; ++i) {
+    const double speed_mps = attempt.effect.curve->x[i];
+    if (speed_mps > 0.0) own[i].lower = 0.0;
+    if (speed_mps < 0.0) own[i].upper = 0.0;
+  }
+  // what a curve shares with the model's own parameters, a slope with a gain, is the model's
+  for (FreeParameter& p : own) p.prior_sd = kPriorSizes;
+  append(all, {own, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(own.size()))});
+  SearchContext with_gains = attempt.context;
+  with_gains.problem.data = stage.context.problem.data;
+  model.fitted = fit_innovations(with_gains, all, SimulationWidth{}, InnovationFit::trial);
+  model.added.push_back(attempt.effect.name);
+  return settled(attempt.context, std::move(model), stage.noise, 1, SimulationWidth{});
+}
+
+/// The curve at a place through so many points; none where the signal hardly varies.
+std::optional<Attempt> attempt_at(const SearchContext& context, const Place& place,
+                                  std::size_t count) {
+  const std::vector<double> samples = samples_of(context, place.over);
+  std::vector<double> points = samples.empty() ? samples : points_of(samples, count);
+  if (points.empty()) return {};
+  Attempt attempt{place, effect_of(place, std::move(points)), context, {}};
+  attempt.context.problem.model.declare(attempt.effect, "learned curve");
+  return attempt;
+}
+
+std::vector<Attempt> first_attempts(const SearchContext& context, const InnovationStage& stage) {
+  const RigScale rig = rig_scale(context.problem.model, context.problem.data);
+  std::vector<Attempt> attempts;
+  std::vector<std::string> names;
+  for (const CurveGain& curve : curve_gains(stage)) {
+    if (names.size() == kTried || !(curve.gain_nats > kCurve_nats)) break;
+    const std::optional<Place> place = place_of(context, rig, curve);
+    if (!place || std::find(names.begin(), names.end(), name_of(*place)) != names.end()) continue;
+    names.push_back(name_of(*place));
+    if (std::optional<Attempt> attempt = attempt_at(context, *place, kFirstPoints))
+      attempts.push_back(std::move(*attempt));
+  }
+  return attempts;
+}
+
+/// Fits the attempts from `first` on, and sorts all, the likeliest first.
+void fit_attempts(const SearchContext& context, const InnovationStage& stage, std::size_t first,
+                  std::vector<Attempt>& attempts) {
+  in_parallel(attempts.size() - first, context.options.threads, [&](std::size_t i) {
+    if (!context.cancelled()) attempts[first + i].stage = fitted(attempts[first + i], stage);
+  });
+  std::stable_sort(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) {
+    return penalised(a.stage) < penalised(b.stage);
+  });
+}
+
+/// The likeliest curve; none where no curve promises anything.
+std::optional<Attempt> likeliest(const SearchContext& context, const InnovationStage& stage) {
+  std::vector<Attempt> attempts = first_attempts(context, stage);
+  fit_attempts(context, stage, 0, attempts);
+  const std::size_t tried = attempts.size();
+  for (std::size_t i = 0; i < std::min(tried, kRefined); ++i) {
+    for (const std::size_t count : kFurtherPoints) {
+      const Place place = attempts[i].place;
+      if (std::optional<Attempt> attempt = attempt_at(context, place, count))
+        attempts.push_back(std::move(*attempt));
+    }
+  }
+  fit_attempts(context, stage, tried, attempts);
+  if (attempts.empty() || context.cancelled()) return {};
+  return std::move(attempts.front());
+}
+
+}  // namespace
+
+std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const ModelStage& base) {
+  const SearchContext context = without_holdouts(with_holdouts);
+  const SimulationWidth width = wide(context.options.threads);
+  const InnovationStage stage = settled(context, base, {}, kMostTurns, width);
+  if (!std::isfinite(stage.minus_two_log) || context.cancelled()) return {};
+  std::optional<Attempt> best = likeliest(context, stage);
+  if (!best) return {};
+  InnovationStage found =
+      settled(best->context, best->stage.model, best->stage.noise, kMostTurns, width);
+  if (!(found.minus_two_log < best->stage.minus_two_log)) found = std::move(best->stage);
+  if (!(penalised(found) < penalised(stage) - 2.0 * kEvidence_nats)) return {};
+  LawSearch search{best->context, base, {}, {{best->effect, {best->place.variable}}}};
+  search.context.problem.data = with_holdouts.problem.data;
+  search.context.problem.candidate_effects.clear();
+  search.innovations.before = stage;
+  InnovationCandidate candidate;
+  candidate.effect = best->effect.name;
+  candidate.settled = true;
+  candidate.penalty_nats = penalty_nats(found.model.fitted, stage.model.fitted);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(found));
+  candidate.fitted = found.model.fitted;
+  candidate.fitted.jacobian.resize(0, 0);
+  InnovationRound round{stage.model, {candidate}, true};
+  round.before.fitted.jacobian.resize(0, 0);
+  search.innovations.gains_nats[candidate.effect] = candidate.gain_nats;
+  search.innovations.rounds.push_back(std::move(round));
+  add_lines(best->context, search.innovations, found);
+  search.innovations.inexact_nats += kInexact * candidate.gain_nats;
+  search.innovations.final = std::move(found);
+  weigh_remainder(best->context, search.innovations);
+  if (search.innovations.physics_missing()) return {};
+  return search;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,57 @@
+// A law that no formula of the dictionary has is learned as a curve.
+#include "estimator/greybox/selection/learned_curve.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "estimator/greybox/law_curve.h"
+#include "estimator/greybox/selection/diagnosis.h"
+#include "plant_sim/library.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using diagnose_test::kServoGain;
+using diagnose_test::servo_context;
+using diagnose_test::with_offset;
+using testing::SizeIs;
+
+/// One per cent of the fastest speed: what a curve of a dozen points leaves.
+constexpr double kClose_mps = 1e-3;
+
+/// A gain that goes up and down with the command: no formula of the dictionary.
+double waved_V(double u_V) { return u_V + 0.25 * std::sin(2.5 * u_V); }
+
+TEST(LearnedCurve, ALawOfNoFormulaStaysACurve) {
+  const SearchContext context = servo_context(
+      {.rate_mps = [](double u_V, double, double) { return kServoGain * waved_V(u_V); }});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  ASSERT_THAT(d.laws, SizeIs(1));
+  const plant_sim::formula::FormulaEffect& effect = d.laws.front().effect;
+  ASSERT_TRUE(effect.curve);
+  EXPECT_EQ(effect.site, "opening");
+  EXPECT_EQ(effect.curve->over, "x_m");
+  EXPECT_LT(d.rms_after_m, 0.02 * d.rms_before_m);
+  // gain and curve together are the true law over the inner part of the motion's commands
+  plant_sim::ModelFile better = d.better;
+  const double gain = *better.value("gain_mps_per_V");
+  const LawCurve curve =
+      law_curve(better, context.problem.data, effect.name, "u",
+                Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect.parameters.size())), {});
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    const double x_mps = curve.x[i];
+    if (curve.share[i] < 0.005) continue;
+    EXPECT_NEAR(x_mps + curve.f[i], kServoGain * waved_V(x_mps / gain), kClose_mps);
+  }
+}
+
+TEST(LearnedCurve, NoneIsFoundWhereNothingIsMissing) {
+  const SearchContext context = servo_context({.rate_mps = with_offset(0.0)});
+  EXPECT_FALSE(search_curve(context, first_stage(context)));
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
