@@ -30,6 +30,11 @@ namespace workbench::diagnose {
 [[nodiscard]] Eigen::VectorXd residual_of_better_m(const DiagnosisReport& outcome,
                                                    double observer_per_s);
 
+/// The same a standard deviation away along each of the widest directions of the parameters'
+/// uncertainty, one column each; no columns where no error is known.
+[[nodiscard]] Eigen::MatrixXd deviated_residuals_m(const DiagnosisReport& outcome,
+                                                   double observer_per_s);
+
 /// Fills in the free-run errors, and the resonance that the better model lacks.
 void simulate_freely(DiagnosisReport& outcome);
 

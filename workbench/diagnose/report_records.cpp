@@ -28,6 +28,7 @@ constexpr double kMillimetres_m = 2e-3;
 struct Residuals {
   plant_sim::ModelFile before;
   Eigen::VectorXd file_m, before_m, after_m, free_file_m, free_after_m;
+  Eigen::MatrixXd free_deviated_m;
 };
 
 /// One residual in the unit that it is drawn in.
@@ -40,7 +41,8 @@ struct RecordPage {
   const greybox::Dataset& record;
   greybox::Kinematics kinematics;
   std::vector<double> file_m, before_m, after_m, free_file_m,
-      free_after_m;  ///< NaN where it does not count
+      free_after_m;                                  ///< NaN where it does not count
+  std::vector<std::vector<double>> free_deviated_m;  ///< NamedValues::deviated
   ResidualSource before, after;
   double noise_floor_m = kNaN;
   bool improved = false;  ///< something was added
@@ -141,6 +143,9 @@ void add_dynamics(const RecordPage& page, Section& section) {
   std::vector<present::NamedValues> models{
       {"model file", Tone::residual, position(page.free_file_m)},
       {"better model", Tone::improved, position(page.free_after_m)}};
+  for (const std::vector<double>& error_m : page.free_deviated_m) {
+    models.back().deviated.push_back(position(error_m));
+  }
   for (Plot& plot : present::response_plots(page.record, models, page.noise_floor_m)) {
     section.plots.push_back(std::move(plot));
   }
@@ -200,6 +205,7 @@ Residuals residuals_of(const DiagnosisReport& outcome) {
   all.after_m = residual_of_better_m(outcome, greybox::kObserver_per_s);
   all.free_file_m = residual_of_file_m(problem, 0.0);
   all.free_after_m = residual_of_better_m(outcome, 0.0);
+  all.free_deviated_m = deviated_residuals_m(outcome, 0.0);
   return all;
 }
 
@@ -220,10 +226,14 @@ std::vector<Section> record_sections(const DiagnosisReport& outcome) {
                     .after_m = counted_part(all.after_m, start, record),
                     .free_file_m = counted_part(all.free_file_m, start, record),
                     .free_after_m = counted_part(all.free_after_m, start, record),
+                    .free_deviated_m = {},
                     .before = {},
                     .after = {},
                     .noise_floor_m = data.noise_floor_m,
                     .improved = !outcome.diagnosis.missing.empty()};
+    for (Eigen::Index k = 0; k < all.free_deviated_m.cols(); ++k) {
+      page.free_deviated_m.push_back(counted_part(all.free_deviated_m.col(k), start, record));
+    }
     if (outcome.fitted()) {
       page.before = residual_source(all.before, record, page.before_m);
       page.after = residual_source(outcome.diagnosis.better, record, page.after_m);

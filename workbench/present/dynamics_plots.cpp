@@ -22,6 +22,9 @@ constexpr double kPerOctave = 32.0;  ///< points drawn of a spectrum
 /// Frequencies that are farther apart, and no neighbours of the spectrum, are not joined.
 constexpr double kGap = 1.3;
 constexpr std::size_t kFewest = 8;
+/// Relative error of a model's response beyond which its band says no more: a magnitude stays
+/// above 0.
+constexpr double kMostError = 0.45;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMillimetres = 1e3;
 
@@ -91,6 +94,23 @@ std::vector<double> unwrapped(const spectra::FrequencyResponse& h,
     phase.push_back(phase.empty() ? angle : phase.back() + wrapped(angle - phase.back()));
   }
   return phase;
+}
+
+/// Standard errors of a model's response by its parameters, relative; 0 where it has none.
+std::vector<double> errors_of(const Dataset& record, const NamedValues& model,
+                              const spectra::FrequencyResponse& its) {
+  std::vector<double> errors(its.value.size(), 0.0);
+  for (const std::vector<double>& values : model.deviated) {
+    const spectra::FrequencyResponse other = validation::speed_response(record, values);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      errors[i] = std::hypot(errors[i], std::abs(other.value[i] - its.value[i]));
+    }
+  }
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double size = std::abs(its.value[i]);
+    errors[i] = size > 0.0 ? std::min(errors[i] / size, kMostError) : 0.0;
+  }
+  return errors;
 }
 
 }  // namespace
@@ -163,13 +183,18 @@ std::vector<Plot> response_plots(const Dataset& record, const std::vector<NamedV
   phase.series.push_back(angle.take());
   for (const NamedValues& model : models) {
     const spectra::FrequencyResponse its = validation::speed_response(record, model.values);
-    Curve its_size(model.name, model.tone, step_Hz, false);
-    Curve its_angle(model.name, model.tone, step_Hz, false);
+    const bool banded = !model.deviated.empty();
+    const std::vector<double> errors = errors_of(record, model, its);
+    Curve its_size(model.name, model.tone, step_Hz, banded);
+    Curve its_angle(model.name, model.tone, step_Hz, banded);
     for (std::size_t n = 0; n < places.size(); ++n) {
       const std::size_t i = places[n];
-      its_size.add(h.frequency_Hz[i], kMillimetres * std::abs(its.value[i]), 0.0, 0.0);
-      const double beside = wrapped(std::arg(its.value[i]) - angles[n]);
-      its_angle.add(h.frequency_Hz[i], kDegrees * (angles[n] + beside), 0.0, 0.0);
+      const double size_now = kMillimetres * std::abs(its.value[i]);
+      const double error = 2.0 * errors[i];
+      its_size.add(h.frequency_Hz[i], size_now, size_now * (1.0 - error), size_now * (1.0 + error));
+      const double now = angles[n] + wrapped(std::arg(its.value[i]) - angles[n]);
+      its_angle.add(h.frequency_Hz[i], kDegrees * now, kDegrees * (now - error),
+                    kDegrees * (now + error));
     }
     magnitude.series.push_back(its_size.take());
     phase.series.push_back(its_angle.take());

@@ -16,6 +16,8 @@ struct NamedValues {
   std::string name;
   Tone tone = Tone::model;
   std::vector<double> values;
+  /// The same a standard deviation away along each direction of the parameters' uncertainty.
+  std::vector<std::vector<double>> deviated{};
 };
 
 /// Amplitude density over frequency; the noise floor as a level where it is known.
@@ -27,8 +29,9 @@ struct NamedValues {
                                         const std::vector<NamedValues>& residuals);
 
 /// Magnitude and phase of the speed over the command, measured with its band of two standard
-/// errors, and of each model's position; at the frequencies that the motion excites. Empty where it
-/// excites fewer than eight. `noise_floor_m` NaN: not known.
+/// errors, and of each model's position, with the band of its parameters where these are deviated;
+/// at the frequencies that the motion excites. Empty where it excites fewer than eight.
+/// `noise_floor_m` NaN: not known.
 [[nodiscard]] std::vector<Plot> response_plots(const estimator::greybox::Dataset& record,
                                                const std::vector<NamedValues>& models,
                                                double noise_floor_m);
@@ -40,7 +43,9 @@ struct NamedValues {
 /// The meaning of the plots above, for the head of their section.
 inline constexpr const char* kDynamicsMeaning =
     "Response: how the speed answers the command, by frequency, measured and simulated over the "
-    "same windows (Welch, H1). The band is two standard errors by the coherence. Only what the "
+    "same windows (Welch, H1). The bands are two standard errors: of the measured one by the "
+    "coherence, of the better model by the errors of its parameters and their correlation. Only "
+    "what the "
     "motion excites is drawn: frequencies where the magnitude is known to 30 %, and the motion "
     "stands five times above the sensor's noise. The spectrum and "
     "the autocorrelation show what the residual still holds: a hill or a slow decay is something "
