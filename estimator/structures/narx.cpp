@@ -93,7 +93,7 @@ VectorXd random_start(const NarxFit& fit, const VectorXd& arx, std::mt19937_64& 
   return x;
 }
 
-double condition_of(MatrixXd jacobian) {
+double jacobian_condition(MatrixXd jacobian) {
   for (Index j = 0; j < jacobian.cols(); ++j) {
     const double length = jacobian.col(j).norm();
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
@@ -231,7 +231,7 @@ NarxFit fit_narx(const NarxOptions& options, const Stretches& data) {
     if (!(least < best)) continue;
     best = least;
     out.x = kept;
-    out.condition = condition_of(solution.jacobian);
+    out.condition = jacobian_condition(solution.jacobian);
   }
   if (out.x.size() == 0 || !out.x.allFinite()) {
     out.why = "the search did not stay finite";

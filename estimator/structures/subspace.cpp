@@ -123,7 +123,7 @@ std::vector<double> numerator(const SubspaceFit& fit, const VectorXd& input,
   return out;
 }
 
-double scaled_condition(MatrixXd x) {
+double condition_of(MatrixXd x) {
   for (Index j = 0; j < x.cols(); ++j) x.col(j) /= std::max(x.col(j).norm(), 1e-300);
   const VectorXd s = linear_algebra::singular_values(linear_algebra::upper_triangle(x));
   return s[0] / s[s.size() - 1];
@@ -151,7 +151,7 @@ SubspaceFit fit_subspace(const SubspaceOptions& o, const Stretches& all) {
   }
   const Windows w = windows_of(o, data);
   out.samples = static_cast<int>(w.y.size());
-  out.condition = scaled_condition(w.past);
+  out.condition = condition_of(w.past);
 
   // Theta P has the left singular vectors of Theta R', P' = Q R: small matrices.
   const MatrixXd theta = prediction_map(o, w);

@@ -23,17 +23,17 @@ constexpr std::size_t kFirstPoints = 8;
 constexpr std::size_t kRefined = 2;
 constexpr std::size_t kFurtherPoints[] = {5, 12, 18, 26};
 /// Share of the samples beyond either end of a curve.
-constexpr double kTail = 0.002;
+constexpr double kSparse = 0.002;
 /// A force of typical size as a share of the rig's greatest; a gain's share.
-constexpr double kTypicalForce = 0.03;
-constexpr double kTypicalRatio = 0.1;
+constexpr double kCurveForce = 0.03;
+constexpr double kCurveRatio = 0.1;
 /// Share of what a curve has explained that others may gain beside it: between a few points it is a
 /// cubic, whatever the law.
-constexpr double kInexact = 0.02;
+constexpr double kInexactCurves = 0.02;
 /// Standard deviation of a curve's values about zero, in typical sizes.
 constexpr double kPriorSizes = 5.0;
 /// Largest value of a curve over its typical one.
-constexpr double kMost = 100.0;
+constexpr double kMostOfCurve = 100.0;
 
 /// A curve's place: its site, the signal it goes over and the one that it is multiplied by.
 struct Place {
@@ -61,7 +61,7 @@ double opening_per_V(const plant_sim::ModelFile& given) {
 
 std::optional<Place> place_of(const SearchContext& context, const RigScale& rig,
                               const CurveGain& curve) {
-  Place place{"force", signal_of(curve.variable), "", curve.variable, kTypicalForce * rig.force_N};
+  Place place{"force", signal_of(curve.variable), "", curve.variable, kCurveForce * rig.force_N};
   if (place.over.empty()) return {};
   if (curve.input == ResidualInput::force) return place;
   if (curve.input == ResidualInput::drag) {
@@ -75,7 +75,7 @@ std::optional<Place> place_of(const SearchContext& context, const RigScale& rig,
   if (place.over == "u_V") place.over = own;
   if (curve.input == ResidualInput::gain) place.times = own;
   const double full = (opening > 0.0 ? opening : 1.0) * rig.most_command_V;
-  place.typical = curve.input == ResidualInput::gain ? kTypicalRatio : kTypicalRatio * full;
+  place.typical = curve.input == ResidualInput::gain ? kCurveRatio : kCurveRatio * full;
   return place;
 }
 
@@ -106,14 +106,14 @@ std::vector<double> points_of(const std::vector<double>& sorted, std::size_t cou
   const auto quantile = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };
-  const double low = quantile(kTail);
-  const double high = quantile(1.0 - kTail);
+  const double low = quantile(kSparse);
+  const double high = quantile(1.0 - kSparse);
   if (!(high > low)) return {};
   std::vector<double> points;
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    points.push_back(0.5 *
-                     (low + (high - low) * share + quantile(kTail + (1.0 - 2.0 * kTail) * share)));
+    points.push_back(
+        0.5 * (low + (high - low) * share + quantile(kSparse + (1.0 - 2.0 * kSparse) * share)));
   }
   if (low < 0.0 && high > 0.0) {
     const auto nearest =
@@ -142,8 +142,8 @@ FormulaEffect effect_of(const Place& place, std::vector<double> points) {
   effect.curve = {place.over, place.times, std::move(points), sizes};
   derive_formula(effect);
   for (FormulaEffect::Parameter& p : effect.parameters) {
-    p.min = -kMost * place.typical;
-    p.max = kMost * place.typical;
+    p.min = -kMostOfCurve * place.typical;
+    p.max = kMostOfCurve * place.typical;
   }
   return effect;
 }
@@ -262,7 +262,7 @@ std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const 
   search.innovations.gains_nats[candidate.effect] = candidate.gain_nats;
   search.innovations.rounds.push_back(std::move(round));
   add_lines(best->context, search.innovations, found);
-  search.innovations.inexact_nats += kInexact * candidate.gain_nats;
+  search.innovations.inexact_nats += kInexactCurves * candidate.gain_nats;
   search.innovations.final = std::move(found);
   weigh_remainder(best->context, search.innovations);
   if (search.innovations.physics_missing()) return {};

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t kMostDifferences = 3;
 /// Share of what effects have explained that may be owed to their being inexact.
-constexpr double kInexact = 0.005;
+constexpr double kInexactRecords = 0.005;
 /// Differences of a round that are fitted.
-constexpr std::size_t kFitted = 4;
+constexpr std::size_t kFittedDifferences = 4;
 /// Range of a plant parameter about its value in the other records, in logarithms.
-constexpr double kRange = 2.3;
+constexpr double kDifferenceRange = 2.3;
 
 struct Differences {
   SearchContext context;
@@ -45,8 +45,8 @@ ModelStage with_difference(const ModelStage& stage, const ChangeScore& score) {
   own.name = parameter_of(score);
   own.prior_sd = std::numeric_limits<double>::infinity();
   if (own.scale == ParameterScale::logarithmic) {
-    own.lower = shared - kRange;
-    own.upper = shared + kRange;
+    own.lower = shared - kDifferenceRange;
+    own.upper = shared + kDifferenceRange;
   }
   ModelStage next = stage;
   ParameterSubset all = subset(next.fitted, [](const auto&) { return true; });
@@ -63,7 +63,7 @@ bool add_difference(Differences& found) {
   const SearchContext& context = found.context;
   std::vector<ChangeScore> scores = record_scores(found.stage);
   std::erase_if(scores, [](const ChangeScore& s) { return !(s.gain_nats > kEvidence_nats); });
-  scores.resize(std::min(scores.size(), kFitted));
+  scores.resize(std::min(scores.size(), kFittedDifferences));
   std::vector<InnovationStage> stages(scores.size());
   in_parallel(scores.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;
@@ -165,7 +165,7 @@ bool find_record_differences(const SearchContext& with_holdouts, const ModelStag
   }
   if (!found) return false;
   const double explained_nats = 0.5 * (plain.minus_two_log - before.minus_two_log);
-  const double enough_nats = kEvidence_nats + kInexact * std::max(0.0, explained_nats);
+  const double enough_nats = kEvidence_nats + kInexactRecords * std::max(0.0, explained_nats);
   if (!(penalised(found->stage) < penalised(before) - 2.0 * enough_nats)) return false;
   SearchContext concluding = with_holdouts;
   concluding.problem.candidate_effects.clear();
