@@ -11,6 +11,7 @@ namespace estimator::greybox {
 
 /// Training samples where no record is held out; the others validate.
 struct Split {
+  // NOLINTNEXTLINE(readability-identifier-naming): named as the split is, Split::blocks
   enum Kind { blocks, first_half, second_half };
 
   // NOLINTNEXTLINE(google-explicit-constructor): a kind is a split
