@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <optional>
 
 #include "estimator/greybox/law_curve.h"
 #include "estimator/greybox/selection/diagnosis.h"
@@ -26,17 +27,18 @@ double waved_V(double u_V) { return u_V + 0.25 * std::sin(2.5 * u_V); }
 
 TEST(LearnedCurve, ALawOfNoFormulaStaysACurve) {
   const SearchContext context = servo_context(
-      {.rate_mps = [](double u_V, double, double) { return kServoGain * waved_V(u_V); }});
-  const Diagnosis d = diagnose(context.problem, context.options);
-  EXPECT_EQ(d.verdict, Verdict::learned);
-  ASSERT_THAT(d.laws, SizeIs(1));
-  const plant_sim::formula::FormulaEffect& effect = d.laws.front().effect;
+      {.rate_mps = [](double u_V, double, double) { return kServoGain * waved_V(u_V); },
+       .samples = 2400});
+  const std::optional<LawSearch> found = search_curve(context, first_stage(context));
+  ASSERT_TRUE(found);
+  ASSERT_THAT(found->laws, SizeIs(1));
+  const plant_sim::formula::FormulaEffect& effect = found->laws.front().effect;
   ASSERT_TRUE(effect.curve);
   EXPECT_EQ(effect.site, "opening");
   EXPECT_EQ(effect.curve->over, "x_m");
-  EXPECT_LT(d.rms_after_m, 0.02 * d.rms_before_m);
-  // gain and curve together are the true law over the inner part of the motion's commands
-  plant_sim::ModelFile better = d.better;
+  // gain and curve together are the true law where the command goes
+  plant_sim::ModelFile better =
+      with_values(found->context.problem.model, found->innovations.final.model.fitted);
   const double gain = *better.value("gain_mps_per_V");
   const LawCurve curve =
       law_curve(better, context.problem.data, effect.name, "u",
