@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <compare>
 #include <deque>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
@@ -256,7 +256,9 @@ class Pages {
     std::uint64_t next = 0;  ///< number of the first point that it lacks
     bool begun = false;
     bool caught_up = false;
-    auto operator<=>(const Place&) const = default;
+    bool operator<(const Place& other) const {
+      return std::tie(next, begun, caught_up) < std::tie(other.next, other.begun, other.caught_up);
+    }
   };
   std::map<StreamId, Place> pages_;
 };
@@ -311,7 +313,7 @@ std::shared_ptr<const Capture> LiveChannel::newest_capture() const {
   return capture_;
 }
 
-std::shared_ptr<const Capture> LiveChannel::number(std::shared_ptr<const Capture> capture) {
+std::shared_ptr<const Capture> LiveChannel::number(const std::shared_ptr<const Capture>& capture) {
   auto numbered = std::make_shared<Capture>(*capture);
   const std::lock_guard lock(mutex_);
   numbered->number = ++captures_;

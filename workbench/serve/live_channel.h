@@ -63,7 +63,7 @@ class LiveChannel {
   void listen();
   [[nodiscard]] Wish wish() const;
   /// Keeps it as the newest, with its number.
-  std::shared_ptr<const Capture> number(std::shared_ptr<const Capture> capture);
+  std::shared_ptr<const Capture> number(const std::shared_ptr<const Capture>& capture);
   void show_capture(const std::shared_ptr<const Capture>& capture,
                     const std::vector<StreamId>& pages);
 
