@@ -35,7 +35,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kBatch{100};
 constexpr std::chrono::seconds kStatus{1};
-constexpr std::chrono::seconds kFigures{3};  ///< a comparison over the last half minute
+constexpr std::chrono::seconds kFigures{5};  ///< a comparison over the last half minute
 constexpr std::chrono::seconds kRetry{1};
 /// A page that loads itself again finds the last minute, and a trigger as it was.
 constexpr std::chrono::seconds kLinger{15};
