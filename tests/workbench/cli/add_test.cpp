@@ -219,59 +219,60 @@ class AddLawTest : public AddTest {
 };
 
 TEST_F(AddLawTest, TakesACurveWithItsTable) {
-  std::string json = R"({"laws": [{"name": "force_over_v", "what": "", "site": "force",
-    "variables": ["v"], "formula": "f(v_mps)",
-              "parameters" : {)";
-  for (const char* value : {R"("f1": {"value": -5.0)", R"(, "f2": {"value": 0.0)", R"(, "f3": {"value": 7.0)"})
-    json += std::string(value) +
-            R"(, "what": "", "min": -1e3, "max": 1e3, "typical": 10.0, "neutral": 0.0})";
-    std::ofstream(diagnosis())
-        << json << R"(}, "table": {"over": "v_mps", "times": "", "x": [-0.1, 0.0, 0.2]}}]})";
-    add({axis_, "--law", "1", "--from", diagnosis()});
-    plant_sim::ModelFile model = plant_sim::load_model(out());
-    ASSERT_TRUE(model.formula_effects.at(0).curve);
-    EXPECT_THAT(model.formula_effects.at(0).curve->x, ::testing::ElementsAre(-0.1, 0.0, 0.2));
-    EXPECT_EQ(*model.value("force_over_v.f3"), 7.0);
-  }
+  const auto value = [](const char* name, double at) {
+    return "\"" + std::string(name) + "\": {\"value\": " + std::to_string(at) +
+           R"(, "what": "", "min": -1e3, "max": 1e3, "typical": 10.0, "neutral": 0.0})";
+  };
+  std::ofstream(diagnosis())
+      << R"json({"laws": [{"name": "force_over_v", "what": "", "site": "force", "variables": ["v"],
+      "formula": "f(v_mps)", "parameters": {)json"
+      << value("f1", -5.0) << ", " << value("f2", 0.0) << ", " << value("f3", 7.0)
+      << R"json(}, "table": {"over": "v_mps", "times": "", "x": [-0.1, 0.0, 0.2]}}]})json";
+  add({axis_, "--law", "1", "--from", diagnosis()});
+  plant_sim::ModelFile model = plant_sim::load_model(out());
+  ASSERT_TRUE(model.formula_effects.at(0).curve);
+  EXPECT_THAT(model.formula_effects.at(0).curve->x, testing::ElementsAre(-0.1, 0.0, 0.2));
+  EXPECT_EQ(*model.value("force_over_v.f3"), 7.0);
+}
 
-  TEST_F(AddLawTest, TakesTheLawWithItsFittedValue) {
-    EXPECT_THAT(add({axis_, "--law", "1", "--from", diagnosis()}), HasSubstr("with cubic_damping"));
-    auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
-    EXPECT_EQ(*plant->parameter("cubic_damping.c"), 812.5);
-    const auto declared = plant_sim::load_model(out()).formula_effects.at(0);
-    EXPECT_EQ(declared.formula, "c * v_mps^3");
-    EXPECT_EQ(declared.parameters[0].max, 1e6);
-    add({axis_, "--law", "1", "--from", diagnosis(), "--name", "drag", "c=900"});
-    plant = plant_sim::make_plant(plant_sim::load_model(out()));
-    EXPECT_EQ(*plant->parameter("drag.c"), 900.0);
-  }
+TEST_F(AddLawTest, TakesTheLawWithItsFittedValue) {
+  EXPECT_THAT(add({axis_, "--law", "1", "--from", diagnosis()}), HasSubstr("with cubic_damping"));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_damping.c"), 812.5);
+  const auto declared = plant_sim::load_model(out()).formula_effects.at(0);
+  EXPECT_EQ(declared.formula, "c * v_mps^3");
+  EXPECT_EQ(declared.parameters[0].max, 1e6);
+  add({axis_, "--law", "1", "--from", diagnosis(), "--name", "drag", "c=900"});
+  plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("drag.c"), 900.0);
+}
 
-  TEST_F(AddLawTest, RefusesLawsThatAreNotThere) {
-    EXPECT_THAT(refusal({axis_, "--law", "2", "--from", diagnosis()}, 2), HasSubstr("1 to 1"));
-    EXPECT_THAT(refusal({axis_, "--law", "1", "--from", axis_}, 65), HasSubstr("is no diagnosis"));
-    EXPECT_THAT(refusal({axis_, "--law", "1", "--from", "/nowhere.json"}, 65), HasSubstr("read"));
-    EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "d=1"}, 2),
-                HasSubstr("d: is not in the formula"));
-    EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "c=-1"}, 2),
-                HasSubstr("out of range"));
-    EXPECT_THAT(refusal({kModels + "velocity_servo.toml", "--law", "1", "--from", diagnosis()}, 2),
-                HasSubstr("velocity_servo does not have"));
-    std::ofstream(diagnosis()) << R"({"laws": [{"name": "cubic_damping"}]})";
-    EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis()}, 65), HasSubstr("complete"));
-    EXPECT_THROW(run_command(workbench::cli::add_add, {axis_, "--law", "1", "-o", out().string()}),
-                 CLI::ParseError);
-  }
+TEST_F(AddLawTest, RefusesLawsThatAreNotThere) {
+  EXPECT_THAT(refusal({axis_, "--law", "2", "--from", diagnosis()}, 2), HasSubstr("1 to 1"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", axis_}, 65), HasSubstr("is no diagnosis"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", "/nowhere.json"}, 65), HasSubstr("read"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "d=1"}, 2),
+              HasSubstr("d: is not in the formula"));
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis(), "c=-1"}, 2),
+              HasSubstr("out of range"));
+  EXPECT_THAT(refusal({kModels + "velocity_servo.toml", "--law", "1", "--from", diagnosis()}, 2),
+              HasSubstr("velocity_servo does not have"));
+  std::ofstream(diagnosis()) << R"({"laws": [{"name": "cubic_damping"}]})";
+  EXPECT_THAT(refusal({axis_, "--law", "1", "--from", diagnosis()}, 65), HasSubstr("complete"));
+  EXPECT_THROW(run_command(workbench::cli::add_add, {axis_, "--law", "1", "-o", out().string()}),
+               CLI::ParseError);
+}
 
-  TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
-    try {
-      run_command(workbench::cli::add_add,
-                  {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});
-      ADD_FAILURE() << "there is no such folder";
-    } catch (const config::schema::RunError& error) {
-    }
-    EXPECT_THROW(run_command(workbench::cli::add_add, {kModels + "thesis.toml", "friction"}),
-                 CLI::ParseError);
+TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
+  try {
+    run_command(workbench::cli::add_add,
+                {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});
+    ADD_FAILURE() << "there is no such folder";
+  } catch (const config::schema::RunError& error) {
   }
+  EXPECT_THROW(run_command(workbench::cli::add_add, {kModels + "thesis.toml", "friction"}),
+               CLI::ParseError);
+}
 
 }  // namespace
 }  // namespace workbench::cli

@@ -17,7 +17,7 @@ TEST(JobSummary, ALearnedLawIsACurveWithItsErrorsInTheUnitsOfItsAxes) {
   selection::Diagnosis& d = report.diagnosis;
   d.better = plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/force_driven_axis.toml");
   const plant_sim::formula::FormulaEffect effect{
-      "cubic_damping", "force", "c * v_mps^3", "drag", {{"c", "size", 0.0, 1e6, 1e3, 0.0}}};
+      "cubic_damping", "force", "c * v_mps^3", "drag", {{"c", "size", 0.0, 1e6, 1e3, 0.0}}, "", {}};
   d.better.declare(effect, "test");
   *d.better.value("cubic_damping.c") = 800.0;
   d.verdict = selection::Verdict::learned;
