@@ -6,6 +6,7 @@
 
 #include "config/signals/nan.h"
 #include "estimator/greybox/kinematics.h"
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/covariance.h"
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/hydraulics.h"
@@ -251,6 +252,32 @@ MatrixXd covariance_of(const FitDataset& data, const FitSummary& fitted,
     }
   }
   return scaled;
+}
+
+MatrixXd deviated_theta(const FitDataset& data, const FitSummary& fitted, const VectorXd& errors,
+                        Index most) {
+  const Index count = errors.size();
+  if (count == 0 || !(errors.maxCoeff() > 0.0)) return {};
+  std::vector<std::string> names;
+  for (const FreeParameter& p : fitted.parameters) names.push_back(p.name);
+  MatrixXd covariance = covariance_of(data, fitted, names, errors);
+  if (covariance.size() == 0) covariance = errors.cwiseAbs2().asDiagonal();
+  const VectorXd scale = errors.unaryExpr([](double e) { return e > 0.0 ? e : 1.0; });
+  const MatrixXd relative =
+      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  const linear_algebra::SingularVectors directions =
+      linear_algebra::left_singular_vectors(relative);
+  const Index used = std::min(most, count);
+  MatrixXd points = fitted.theta.replicate(1, used);
+  for (Index k = 0; k < used; ++k) {
+    points.col(k) += scale.asDiagonal() * directions.vectors.col(k) *
+                     std::sqrt(std::max(directions.values[k], 0.0));
+    for (Index i = 0; i < count; ++i) {
+      const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
+      points(i, k) = std::clamp(points(i, k), p.lower, p.upper);
+    }
+  }
+  return points;
 }
 
 LawCurve law_curve(const plant_sim::ModelFile& model, const FitDataset& data,

@@ -40,6 +40,12 @@ struct LawCurve {
                                             const std::vector<std::string>& names,
                                             const Eigen::VectorXd& errors);
 
+/// Search values a standard deviation away from the fitted ones along each of the `most` widest
+/// directions of their uncertainty, within their bounds, one column each; `errors` are those of the
+/// search values. No columns where all errors are zero.
+[[nodiscard]] Eigen::MatrixXd deviated_theta(const FitDataset& data, const FitSummary& fitted,
+                                             const Eigen::VectorXd& errors, Eigen::Index most);
+
 /// Curve of `effect`, a formula of the model, over the variable that the site has for "y", "v" or
 /// any other, the first. The other one is held: the position at its mean, the speed at its RMS,
 /// pressures at half the range. `errors` are those of its parameters, in their order, `covariance`

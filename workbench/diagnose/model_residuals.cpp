@@ -1,12 +1,10 @@
 #include "workbench/diagnose/model_residuals.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "config/signals/nan.h"
 #include "estimator/greybox/law_curve.h"
 #include "estimator/greybox/validation/speed_response.h"
-#include "estimator/linear_algebra/decompositions.h"
 
 namespace workbench::diagnose {
 
@@ -63,36 +61,18 @@ MatrixXd deviated_residuals_m(const DiagnosisReport& outcome, double observer_pe
   const greybox::FitDataset& data = outcome.prepared->problem.data;
   const std::vector<greybox::FreeParameter>& parameters = d.final.parameters;
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  // errors of the search values, and their correlation
-  VectorXd errors = VectorXd::Zero(count);
-  std::vector<std::string> names;
+  VectorXd errors = VectorXd::Zero(count);  // of the search values
   for (Eigen::Index i = 0; i < count; ++i) {
     const greybox::FreeParameter& p = parameters[static_cast<std::size_t>(i)];
-    names.push_back(p.name);
     for (const selection::ParameterValue& value : d.parameters) {
       const double slope = p.slope(d.final.theta[i]);
       if (value.name == p.name && std::isfinite(value.std_error) && slope > 0.0)
         errors[i] = value.std_error / slope;
     }
   }
-  if (!(errors.maxCoeff() > 0.0)) return {};
-  MatrixXd covariance = greybox::covariance_of(data, d.final, names, errors);
-  if (covariance.size() == 0) covariance = errors.cwiseAbs2().asDiagonal();
-  const VectorXd scale = errors.unaryExpr([](double e) { return e > 0.0 ? e : 1.0; });
-  const MatrixXd relative =
-      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
-  const estimator::linear_algebra::SingularVectors directions =
-      estimator::linear_algebra::left_singular_vectors(relative);
-  const Eigen::Index used = std::min(greybox::ObserverSimulation::kLanes, count);
-  MatrixXd points = d.final.theta.replicate(1, used);
-  for (Eigen::Index k = 0; k < used; ++k) {
-    points.col(k) += scale.asDiagonal() * directions.vectors.col(k) *
-                     std::sqrt(std::max(directions.values[k], 0.0));
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const greybox::FreeParameter& p = parameters[static_cast<std::size_t>(i)];
-      points(i, k) = std::clamp(points(i, k), p.lower, p.upper);
-    }
-  }
+  const MatrixXd points =
+      greybox::deviated_theta(data, d.final, errors, greybox::ObserverSimulation::kLanes);
+  if (points.cols() == 0) return {};
   greybox::DatasetSimulation runs(d.better, data, parameters, observer_per_s);
   MatrixXd residuals_m;
   runs.residuals(points, residuals_m);

@@ -17,11 +17,11 @@ namespace {
 using plant_sim::formula::FormulaEffect;
 
 /// Sites and variables that are fitted, the likeliest first.
-constexpr std::size_t kTried = 3;
+constexpr std::size_t kTried = 2;
 constexpr std::size_t kFirstPoints = 8;
 /// The likeliest of these with other numbers of points.
-constexpr std::size_t kRefined = 2;
-constexpr std::size_t kFurtherPoints[] = {5, 12, 18, 26};
+constexpr std::size_t kRefined = 1;
+constexpr std::size_t kFurtherPoints[] = {5, 14};
 /// Share of the samples beyond either end of a curve.
 constexpr double kSparse = 0.002;
 /// A force of typical size as a share of the rig's greatest; a gain's share.

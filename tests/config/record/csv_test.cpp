@@ -139,7 +139,7 @@ TEST(Csv, TakesRowsWithoutANumberForGaps) {
 }
 
 TEST(Csv, RefusesTimesThatDoNotGoOnEvenly) {
-  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,0\n0.005,1,0\n0.01,1,0\n", ":4", "does not increase");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,0\n0.005,2,0\n0.01,1,0\n", ":4", "does not increase");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.010,1,0\n0.005,1,0\n0.01,1,0\n", ":4", "does not increase");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,0\n0.010,1,0\n0.0175,1,0\n0.0225,1,0\n", ":5",
              "unevenly sampled");

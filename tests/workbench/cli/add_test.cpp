@@ -170,6 +170,7 @@ TEST_F(AddTest, WritesAFormulaWithItsMemory) {
   EXPECT_EQ(effect.memory, "(u_V - z)/lag_s");
   EXPECT_EQ(effect.parameters[0].neutral, 0.0);
   EXPECT_GT(effect.parameters[1].min, 0.0);
+  fs::remove(out());
   const std::string axis = kModels + "force_driven_axis.toml";
   EXPECT_THAT(refusal({axis, "--formula", "command: u_V + k*z", "k=1"}, 2),
               HasSubstr("unknown name z"));
