@@ -40,7 +40,7 @@ struct Place {
   std::string site;
   std::string over;
   std::string times;
-  std::string variable;  ///< of the score test
+  std::string variable;  ///< name in the score test
   double typical = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// What differs between records: a parameter of the model that has another value in one of them.
+// Differences between records: a parameter of the model that has another value in one of them.
 #pragma once
 
 #include "estimator/greybox/selection/diagnosis.h"
