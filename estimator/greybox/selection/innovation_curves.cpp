@@ -75,4 +75,9 @@ std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
   return gains;
 }
 
+double largest_curve_nats(const InnovationStage& stage) {
+  const std::vector<CurveGain> curves = curve_gains(stage);
+  return curves.empty() ? 0.0 : curves.front().gain_nats;
+}
+
 }  // namespace estimator::greybox::selection

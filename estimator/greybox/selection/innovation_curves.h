@@ -20,4 +20,11 @@ struct CurveGain {
 /// One per site and variable, best first. `stage` has its Jacobian.
 [[nodiscard]] std::vector<CurveGain> curve_gains(const InnovationStage& stage);
 
+/// Gain of a curve over a variable of the motion above which physics is missing. The largest of 32
+/// curves stays below 25 on healthy and rightly named records.
+inline constexpr double kCurve_nats = 30.0;
+
+/// Gain of the best curve; 0: there is none.
+[[nodiscard]] double largest_curve_nats(const InnovationStage& stage);
+
 }  // namespace estimator::greybox::selection

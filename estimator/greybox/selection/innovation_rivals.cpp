@@ -76,9 +76,10 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
 }
 
 std::vector<InnovationStage> exchanges(const SearchContext& plain, const InnovationStage& final,
-                                       const std::string& effect, const InnovationStage& without) {
+                                       const std::string& effect, const InnovationStage& without,
+                                       SimulatedEffectsMemo& simulated) {
   std::vector<InnovationTrial> rivals = effect_trials(without);
-  add_simulated_starts(without, simulated_effects(plain, without.model), rivals);
+  add_simulated_starts(without, simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);
   double best = -std::numeric_limits<double>::infinity();
   for (const InnovationTrial& rival : rivals) {

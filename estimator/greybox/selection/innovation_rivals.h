@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/innovation_trials.h"
 
 namespace estimator::greybox::selection {
 
@@ -32,7 +32,8 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
 [[nodiscard]] std::vector<InnovationStage> exchanges(const SearchContext& plain,
                                                      const InnovationStage& final,
                                                      const std::string& effect,
-                                                     const InnovationStage& without);
+                                                     const InnovationStage& without,
+                                                     SimulatedEffectsMemo& simulated);
 
 /// The effect and those of its exchanges that explain the record about as well.
 [[nodiscard]] InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,

@@ -21,23 +21,17 @@
 #include <vector>
 
 #include "estimator/greybox/disturbance/force_jump.h"
+#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
+#include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 
 namespace estimator::greybox::selection {
 
-/// Gain of a curve over a variable of the motion above which physics is missing. The largest of 32
-/// curves stays below 25 on healthy and rightly named records.
-inline constexpr double kCurve_nats = 30.0;
+inline constexpr std::size_t kMostInnovationEffects = 4;
 
 /// Gain of a load that sets in, over that of jumps that are usual on the record.
 inline constexpr double kStandsOut = 3.0;
-
-struct InnovationRound {
-  ModelStage before;                            ///< without Jacobian
-  std::vector<InnovationCandidate> candidates;  ///< the one taken, if any, then the best first
-  bool taken = false;                           ///< the first candidate
-};
 
 struct InnovationSearch {
   InnovationStage before;  ///< the model as given and its noise model, lines not included
@@ -54,6 +48,8 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
+  SimulatedEffectsMemo simulated;  ///< of the search's candidates
+
   /// True when a load sets in, which no curve over the motion explains better and which stands out
   /// from the disturbance's own jumps.
   [[nodiscard]] bool load_sets_in() const {
@@ -67,10 +63,10 @@ struct InnovationSearch {
 
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
 /// the best that it has found: this is taken where its likelihood is the higher one. Records that
-/// only score take no part.
-[[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
-                                                  const ModelStage& first,
-                                                  const SearchBranch& held);
+/// only score take no part. `most_effects`: that the search adds.
+[[nodiscard]] InnovationSearch search_innovations(
+    const SearchContext& context, const ModelStage& first, const SearchBranch& held,
+    std::size_t most_effects = kMostInnovationEffects);
 
 /// The context without records that only score.
 [[nodiscard]] SearchContext without_holdouts(SearchContext context);
@@ -88,7 +84,8 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search);
 /// exchanges() of the i-th effect of the final model with the candidates of `context`.
 [[nodiscard]] std::vector<InnovationStage> exchanges_of(const SearchContext& context,
                                                         const InnovationSearch& search,
-                                                        std::size_t i);
+                                                        std::size_t i,
+                                                        SimulatedEffectsMemo& simulated);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

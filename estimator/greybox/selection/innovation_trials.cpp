@@ -133,6 +133,8 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   return trials;
 }
 
+namespace {
+
 SimulatedEffects simulated_effects(const SearchContext& plain, const ModelStage& model) {
   ModelStage with_observer = model;
   ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
@@ -161,6 +163,25 @@ SimulatedEffects simulated_effects(const Round& round) {
     result.effects.push_back({candidate.effects.front(), candidate.fitted});
   }
   return result;
+}
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+SimulatedEffectsMemo::SimulatedEffectsMemo(const std::vector<Round>& known) {
+  for (const Round& round : known)
+    known_.emplace(sorted(round.before.added), simulated_effects(round));
+}
+
+const SimulatedEffects& SimulatedEffectsMemo::beside(const SearchContext& plain,
+                                                     const ModelStage& model) {
+  const auto [at, is_new] = known_.try_emplace(sorted(model.added));
+  if (is_new) at->second = simulated_effects(plain, model);
+  return at->second;
 }
 
 void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,

@@ -1,6 +1,7 @@
 // Candidates of a round of the innovation search before they get noise models of their own.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -51,11 +52,19 @@ struct SimulatedEffects {
   double training_rms_without_m = 0.0;
   std::vector<SimulatedEffect> effects;
 };
-/// The effects that a screening ranks first.
-[[nodiscard]] SimulatedEffects simulated_effects(const SearchContext& plain,
-                                                 const ModelStage& model);
-/// The candidates of a round that has begun with the same model.
-[[nodiscard]] SimulatedEffects simulated_effects(const Round& round);
+
+/// The effects that simulations show beside a model's, found once for each set of effects.
+class SimulatedEffectsMemo {
+ public:
+  SimulatedEffectsMemo() = default;
+  /// `known`: rounds of a search by simulations with the same candidates.
+  explicit SimulatedEffectsMemo(const std::vector<Round>& known);
+  const SimulatedEffects& beside(const SearchContext& plain, const ModelStage& model);
+
+ private:
+  std::map<std::vector<std::string>, SimulatedEffects> known_;
+};
+
 /// Further starts for the most promising of them: the stage's gains may be those that hide an
 /// effect, above all friction that sticks.
 void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,

@@ -38,8 +38,9 @@ bool law_competes(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {
   const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);
   if (dictionary.empty() || context.cancelled()) return false;
+  SimulatedEffectsMemo simulated;
   const std::vector<InnovationStage> others =
-      exchanges_of(with_laws(context, dictionary, {}), named, 0);
+      exchanges_of(with_laws(context, dictionary, {}), named, 0, simulated);
   return std::any_of(others.begin(), others.end(), [&](const InnovationStage& other) {
     return penalised(other) < penalised(named.final) + 2.0 * kRivals_nats;
   });
@@ -47,11 +48,12 @@ bool law_competes(const SearchContext& context, const std::string& site,
 
 std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first,
                                      const std::string& site,
-                                     const std::vector<std::string>& effects, LawChoice choice) {
+                                     const std::vector<std::string>& effects, LawChoice choice,
+                                     std::size_t most_effects) {
   const std::vector<Law> dictionary = laws_at(context, site, choice);
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
-  search.innovations = search_innovations(search.context, first, {});
+  search.innovations = search_innovations(search.context, first, {}, most_effects);
   const InnovationSearch& found = search.innovations;
   const std::vector<std::string>& added = found.final.model.added;
   if (found.physics_missing()) return {};

@@ -25,10 +25,11 @@ struct LawSearch {
 
 /// None where one or two laws leave physics unexplained, or none is of use. `first`: the model as
 /// given, fitted with the weak observer. `site`: where laws are looked for; empty: everywhere.
-/// `effects` of the library compete with them; `choice` of laws.
+/// `effects` of the library compete with them; `choice` of laws; `most_effects` of both together
+/// are tried.
 [[nodiscard]] std::optional<LawSearch> search_laws(const SearchContext& context,
                                                    const ModelStage& first, const std::string& site,
                                                    const std::vector<std::string>& effects,
-                                                   LawChoice choice);
+                                                   LawChoice choice, std::size_t most_effects);
 
 }  // namespace estimator::greybox::selection

@@ -93,7 +93,9 @@ bool take_better(const SearchContext& context, const ModelStage& first,
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
   const ModelStage named = result.search.final;
   if (take_better(context, first,
-                  search_laws(context, first, "", named.added, LawChoice::unexplained), result))
+                  search_laws(context, first, "", named.added, LawChoice::unexplained,
+                              kMostInnovationEffects),
+                  result))
     return;
   // a curve is more than a formula has to say: it comes last
   if (take_better(context, first, search_curve(context, first), result)) return;
@@ -114,7 +116,7 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
       search_laws(context, first, site, several ? added : std::vector<std::string>(),
-                  LawChoice::against_effects);
+                  LawChoice::against_effects, added.size() + 1);
   return found && found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 constexpr int kHalfIterations = 10;
 /// Distance over its error that chance reaches once in twenty.
-constexpr double kChance = 2.0;
+constexpr double kClearlyApart = 2.0;
 
 /// The weights of the first or the last samples that count, half of all.
 VectorXd half_of(const VectorXd& weights, bool first) {
@@ -52,7 +52,7 @@ VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
     for (const VectorXd& error : errors) {
       if (std::isfinite(error[i])) expected = std::hypot(expected, error[i]);
     }
-    if (expected > 0.0 && apart > kChance * expected) scatter[i] = 0.5 * apart;
+    if (expected > 0.0 && apart > kClearlyApart * expected) scatter[i] = 0.5 * apart;
   }
   return scatter;
 }

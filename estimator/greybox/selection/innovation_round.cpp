@@ -1,0 +1,255 @@
+#include "estimator/greybox/selection/innovation_round.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+#include <utility>
+
+#include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/innovation_rivals.h"
+#include "estimator/greybox/selection/resonance_or_line.h"
+#include "estimator/greybox/selection/spectral_line_candidates.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+
+namespace {
+
+constexpr std::size_t kMostLines = 4;
+/// Candidates of a round that get a noise model of their own.
+constexpr std::size_t kRoundFinalists = 3;
+constexpr std::size_t kMostLineFinalists = 2;
+/// Lead of the likeliest candidate that another may make up for when its noise model and parameters
+/// have converged together.
+constexpr double kContends_nats = 30.0;
+
+/// Drops effects that have left their range since others came in: these, or a law that the library
+/// does not have, are what they stood for.
+void drop_out_of_range(const SearchContext& plain, InnovationStage& stage,
+                       std::set<std::string>& dropped) {
+  for (std::string effect = effect_out_of_range(stage); !effect.empty() && !plain.cancelled();
+       effect = effect_out_of_range(stage)) {
+    stage = without(plain, stage, effect);
+    dropped.insert(std::move(effect));
+  }
+}
+
+bool leaves_physics(const InnovationStage& stage) {
+  return largest_curve_nats(stage) > kCurve_nats;
+}
+
+std::vector<InnovationTrial> line_trials(const SearchContext& plain, const InnovationStage& stage) {
+  std::vector<InnovationTrial> trials;
+  std::vector<ScoredLine> lines = line_candidates(plain, stage);
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostLineFinalists); ++i) {
+    InnovationTrial trial;
+    trial.candidate.line = lines[i].line;
+    trial.penalty_nats = kPerParameter_nats * kParametersOfLine;
+    trial.candidate.gain_nats = lines[i].gain_nats - trial.penalty_nats;
+    trial.starts = {stage.model};
+    trials.push_back(std::move(trial));
+  }
+  return trials;
+}
+
+/// The trials of a round and the stage that each leads to.
+class RoundTrials {
+ public:
+  RoundTrials(const SearchContext& plain, const InnovationStage& stage, int number)
+      : plain_(plain), stage_(stage) {
+    progress_.round = number;
+    progress_.by_innovations = true;
+  }
+
+  /// Gives the most promising of the trials noise models of their own.
+  void settle_finalists(std::vector<InnovationTrial> trials) {
+    trials_ = std::move(trials);
+    sort_by_gain(trials_);
+    std::vector<std::size_t> finalists;
+    for (std::size_t i = 0; i < std::min(kRoundFinalists, trials_.size()); ++i) {
+      if (trials_[i].candidate.gain_nats > 0.0) finalists.push_back(i);
+    }
+    settle(finalists);
+  }
+
+  /// Starts the most promising effects of simulations from there too.
+  void settle_simulated(const SimulatedEffects& effects) {
+    add_simulated_starts(stage_, effects, trials_);
+    std::vector<std::size_t> promising;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (trials_[i].simulated) promising.push_back(i);
+    }
+    settle(promising);
+  }
+
+  /// The likeliest candidate that gains `evidence_nats` within its range, all that contend with it
+  /// polished; the number of trials: there is none.
+  std::size_t choose(double evidence_nats) {
+    std::size_t chosen = likeliest(evidence_nats);
+    while (chosen != none() && polished_[chosen] == 0 && !plain_.cancelled()) {
+      polish_contenders(chosen);
+      chosen = likeliest(evidence_nats);
+    }
+    return chosen;
+  }
+
+  [[nodiscard]] std::size_t none() const { return trials_.size(); }
+  [[nodiscard]] InnovationStage& stage(std::size_t i) { return stages_[i]; }
+  [[nodiscard]] const InnovationCandidate& candidate(std::size_t i) const {
+    return trials_[i].candidate;
+  }
+
+  [[nodiscard]] InnovationRound report(std::size_t chosen) {
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      trials_[i].candidate.penalty_nats = trials_[i].penalty_nats;
+      if (trials_[i].candidate.settled) trials_[i].candidate.fitted = stages_[i].model.fitted;
+      trials_[i].candidate.fitted.jacobian.resize(0, 0);
+    }
+    InnovationRound round{stage_.model, {}, chosen != none()};
+    round.before.fitted.jacobian.resize(0, 0);
+    if (chosen != none()) round.candidates.push_back(trials_[chosen].candidate);
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (i != chosen) round.candidates.push_back(trials_[i].candidate);
+    }
+    return round;
+  }
+
+ private:
+  void take(std::size_t i, InnovationStage reached) {
+    stages_[i] = std::move(reached);
+    trials_[i].candidate.gain_nats =
+        0.5 * (stage_.minus_two_log - stages_[i].minus_two_log) - trials_[i].penalty_nats;
+  }
+
+  void settle(const std::vector<std::size_t>& chosen) {
+    progress_.of += static_cast<int>(chosen.size());
+    stages_.resize(trials_.size());
+    polished_.resize(trials_.size(), 0);
+    in_parallel(chosen.size(), plain_.options.threads, [&](std::size_t k) {
+      if (!plain_.cancelled()) settle(chosen[k]);
+    });
+  }
+
+  void settle(std::size_t i) {
+    InnovationCandidate& candidate = trials_[i].candidate;
+    InnovationTrial unknown = trials_[i];
+    if (candidate.settled) unknown.starts = {trials_[i].starts.back()};
+    InnovationStage reached = settled(plain_, stage_, unknown);
+    if (!(reached.minus_two_log < stages_[i].minus_two_log)) return;
+    take(i, std::move(reached));
+    candidate.settled = true;
+    polished_[i] = 0;
+    if (!plain_.options.progress) return;
+    const std::lock_guard lock(reporting_);
+    ++progress_.done;
+    progress_.effect = candidate.effect.empty() ? "a spectral line" : candidate.effect;
+    plain_.options.progress(progress_);
+  }
+
+  // an effect that leaves its range, at once or with its noise model settled, stands for another
+  [[nodiscard]] std::size_t likeliest(double evidence_nats) const {
+    const std::size_t own = stage_.model.fitted.parameters.size();
+    std::size_t best = none();
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      const InnovationCandidate& candidate = trials_[i].candidate;
+      if (!candidate.settled || !(candidate.gain_nats >= evidence_nats)) continue;
+      if (leaves_its_range(stages_[i].model.fitted, own)) continue;
+      if (best == none() || candidate.gain_nats > trials_[best].candidate.gain_nats) best = i;
+    }
+    return best;
+  }
+
+  void polish_contenders(std::size_t best) {
+    const double best_nats = trials_[best].candidate.gain_nats;
+    std::vector<std::size_t> contenders;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      const InnovationCandidate& candidate = trials_[i].candidate;
+      const bool contends = candidate.gain_nats > best_nats - kContends_nats;
+      if (contends && candidate.settled && polished_[i] == 0) contenders.push_back(i);
+    }
+    const unsigned threads = plain_.options.threads;
+    const SimulationWidth width = contenders.size() == 1 ? wide(threads) : SimulationWidth{};
+    in_parallel(contenders.size(), threads, [&](std::size_t k) {
+      const std::size_t i = contenders[k];
+      if (plain_.cancelled()) return;
+      polished_[i] = 1;
+      InnovationStage turned =
+          settled(plain_, stages_[i].model, stages_[i].noise, kMostTurns, width);
+      if (turned.minus_two_log < stages_[i].minus_two_log) take(i, std::move(turned));
+    });
+  }
+
+  const SearchContext& plain_;
+  const InnovationStage& stage_;
+  std::vector<InnovationTrial> trials_;
+  std::vector<InnovationStage> stages_;
+  std::vector<char> polished_;
+  SearchProgress progress_;
+  std::mutex reporting_;
+};
+
+}  // namespace
+
+void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
+  for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
+    for (const disturbance::LineSite site : disturbance::sites_of(stage.linear.front())) {
+      if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
+      InnovationStage other =
+          settled(plain, stage.model, moved(stage.noise, i, site), 1, wide(plain.options.threads));
+      if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
+    }
+  }
+}
+
+std::string effect_out_of_range(const InnovationStage& stage) {
+  const FitSummary& fitted = stage.model.fitted;
+  for (const std::string& effect : stage.model.added) {
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      if (!belongs_to(fitted.parameters[i], effect)) continue;
+      if (leaves_its_range(fitted, i, i + 1) ||
+          rings_with_a_line(stage, fitted.parameters[i],
+                            fitted.theta[static_cast<Eigen::Index>(i)])) {
+        return effect;
+      }
+    }
+  }
+  return "";
+}
+
+bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
+            SimulatedEffectsMemo& simulated, std::vector<InnovationRound>& rounds,
+            std::set<std::string>& dropped) {
+  const bool effects_too = options.candidates == Candidates::effects_and_lines;
+  const bool may_grow = effects_too && stage.model.added.size() < options.most_effects;
+  std::vector<InnovationTrial> first;
+  if (may_grow) first = effect_trials(stage);
+  std::erase_if(first, [&](const InnovationTrial& trial) {
+    return dropped.contains(trial.candidate.effect);
+  });
+  if (stage.noise.lines.size() < kMostLines) {
+    std::vector<InnovationTrial> lines = line_trials(plain, stage);
+    std::move(lines.begin(), lines.end(), std::back_inserter(first));
+  }
+  RoundTrials trials(plain, stage, static_cast<int>(rounds.size()) + 1);
+  trials.settle_finalists(std::move(first));
+  std::size_t chosen = trials.choose(options.evidence_nats);
+  // simulations cost as much as the rest of a round: asked where that leaves something
+  if (may_grow && (chosen == trials.none() || leaves_physics(trials.stage(chosen)))) {
+    SimulatedEffects beside = simulated.beside(plain, stage.model);
+    std::erase_if(beside.effects,
+                  [&](const SimulatedEffect& one) { return dropped.contains(one.effect); });
+    trials.settle_simulated(beside);
+    chosen = trials.choose(options.evidence_nats);
+  }
+  rounds.push_back(trials.report(chosen));
+  if (chosen == trials.none()) return false;
+  const bool is_effect = !trials.candidate(chosen).effect.empty();
+  stage = InnovationStage(std::move(trials.stage(chosen)));
+  if (!effects_too) return true;
+  drop_out_of_range(plain, stage, dropped);
+  if (is_effect) reconsider_sites(plain, stage);
+  return true;
+}
+
+}  // namespace estimator::greybox::selection
