@@ -235,7 +235,8 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptio
   trials.settle_finalists(std::move(first));
   std::size_t chosen = trials.choose(options.evidence_nats);
   // simulations cost as much as the rest of a round: asked where that leaves something
-  if (may_grow && (chosen == trials.none() || leaves_physics(trials.stage(chosen)))) {
+  const InnovationStage& reached = chosen == trials.none() ? stage : trials.stage(chosen);
+  if (may_grow && (simulated.knows(stage.model) || leaves_physics(reached))) {
     SimulatedEffects beside = simulated.beside(plain, stage.model);
     std::erase_if(beside.effects,
                   [&](const SimulatedEffect& one) { return dropped.contains(one.effect); });

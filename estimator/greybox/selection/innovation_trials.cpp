@@ -184,6 +184,10 @@ const SimulatedEffects& SimulatedEffectsMemo::beside(const SearchContext& plain,
   return at->second;
 }
 
+bool SimulatedEffectsMemo::knows(const ModelStage& model) const {
+  return known_.contains(sorted(model.added));
+}
+
 void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,
                           std::vector<InnovationTrial>& trials) {
   std::vector<SimulatedEffect>& effects = simulated.effects;

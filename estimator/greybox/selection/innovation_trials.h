@@ -60,6 +60,7 @@ class SimulatedEffectsMemo {
   /// `known`: rounds of a search by simulations with the same candidates.
   explicit SimulatedEffectsMemo(const std::vector<Round>& known);
   const SimulatedEffects& beside(const SearchContext& plain, const ModelStage& model);
+  [[nodiscard]] bool knows(const ModelStage& model) const;
 
  private:
   std::map<std::vector<std::string>, SimulatedEffects> known_;

@@ -7,11 +7,14 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostLaws = 2;
+/// The sizes of laws and of the effects beside them are scaled to the rig.
+constexpr Eigen::Index kLawSizes = kTrialSizes / 2;
 
 SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,
                         const std::vector<std::string>& effects) {
   SearchContext result = context;
   DiagnosisProblem& problem = result.problem;
+  problem.trial_sizes = kLawSizes;
   for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
   // the library's effects with the sizes that are typical of this rig
   std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {

@@ -29,11 +29,15 @@ struct SearchProgress {
   std::vector<std::string> expected;  ///< ranking by screening, once known
 };
 
+/// Sizes that the screening tries an effect at.
+inline constexpr Eigen::Index kTrialSizes = 8;
+
 struct DiagnosisProblem {
   plant_sim::ModelFile model;
   FitDataset data;
   std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
   std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
+  Eigen::Index trial_sizes = kTrialSizes;                ///< fewer where they fit the rig
   double interpolated_nats = 0.0;  ///< gain of interpolating the command, which is not exact
 };
 

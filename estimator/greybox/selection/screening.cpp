@@ -44,20 +44,26 @@ std::vector<Base> bases_of(const SearchContext& context, const ModelStage& stage
   return {{stage.fitted.theta, stage.fitted.residual_m}, {nominal, residual_m.col(0)}};
 }
 
-/// The best of several sizes of an effect from one base.
-ScoredStart look(DatasetSimulation& run, const Projection& projection, const Base& base,
-                 const std::vector<FreeParameter>& own, const MatrixXd& sizes) {
-  ScoredStart best;
+/// The best of several sizes of an effect from each base. All share the lanes of a simulation.
+std::vector<ScoredStart> look(DatasetSimulation& run, const Projection& projection,
+                              const std::vector<Base>& bases, const std::vector<FreeParameter>& own,
+                              const MatrixXd& sizes) {
+  std::vector<ScoredStart> best(bases.size());
   MatrixXd residuals_m;
-  const Index base_size = base.theta.size();
-  for (Index from = 0; from < sizes.cols(); from += ObserverSimulation::kLanes) {
-    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, sizes.cols() - from);
+  const Index base_size = bases.front().theta.size();
+  const Index all = sizes.cols() * static_cast<Index>(bases.size());
+  const auto base_of = [&](Index point) { return static_cast<std::size_t>(point / sizes.cols()); };
+  for (Index from = 0; from < all; from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, all - from);
     MatrixXd points(base_size + sizes.rows(), lanes);
-    points.topRows(base_size) = base.theta.replicate(1, lanes);
-    points.bottomRows(sizes.rows()) = sizes.middleCols(from, lanes);
+    for (Index lane = 0; lane < lanes; ++lane) {
+      points.col(lane) << bases[base_of(from + lane)].theta,
+          sizes.col((from + lane) % sizes.cols());
+    }
     run.residuals(points, residuals_m);
     for (Index lane = 0; lane < lanes; ++lane) {
       if (!residuals_m.col(lane).allFinite()) continue;
+      const Base& base = bases[base_of(from + lane)];
       const auto [cost, share] =
           projection.with(base.residual_m, base.theta, residuals_m.col(lane) - base.residual_m);
       VectorXd start = points.col(lane);
@@ -67,7 +73,8 @@ ScoredStart look(DatasetSimulation& run, const Projection& projection, const Bas
       const bool possible = scale_size(own, std::copysign(size, share), start.tail(sizes.rows()));
       // wrong sign: kept as a start only when there is no better one
       const double counted = possible ? cost : std::max(cost, projection.cost());
-      if (counted < best.cost) best = {counted, std::move(start)};
+      ScoredStart& known = best[base_of(from + lane)];
+      if (counted < known.cost) known = {counted, std::move(start)};
     }
   }
   return best;
@@ -229,9 +236,9 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
   } else if (is_resonant(own)) {
     starts = resonance_starts(context, stage, projection, own, result.parameters);
   } else {
-    const MatrixXd sizes = trial_sizes(own, context.problem.data);
+    const MatrixXd sizes = trial_sizes(own, context.problem.data, context.problem.trial_sizes);
     DatasetSimulation run(context.problem.model, context.problem.data, result.parameters);
-    for (const Base& base : bases) starts.push_back(look(run, projection, base, own, sizes));
+    starts = look(run, projection, bases, own, sizes);
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const ScoredStart& a, const ScoredStart& b) { return a.cost < b.cost; });

@@ -14,7 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kHalfPi = 1.5707963267948966;
-constexpr Index kSizes = 8;
 constexpr double kSignedRatio = 4.0;    ///< ratio between sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< ratio between sizes of a one-signed effect
 constexpr double kSmallSize =
@@ -91,17 +90,22 @@ Index index_of(const std::vector<FreeParameter>& parameters, const std::string& 
 
 }  // namespace
 
-MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitDataset& data) {
+MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitDataset& data,
+                     Index count) {
   const PositionRange span = span_of(data);
   const VectorXd typical = typical_point(parameters, span);
   const bool is_limit = parameters.front().scale == ParameterScale::reciprocal;
   const bool both_signs = parameters.front().lower < 0.0;
-  MatrixXd points(typical.size(), kSizes);
-  for (Index k = 0; k < kSizes; ++k) {
+  MatrixXd points(typical.size(), count);
+  // each size stands in the middle of its share of the range
+  const double step = static_cast<double>(kTrialSizes) / static_cast<double>(count);
+  const auto place = [&](double k) { return (k + 0.5) * step - 0.5; };
+  for (Index k = 0; k < count; ++k) {
+    const double of_sign = std::floor(0.5 * static_cast<double>(k));
     const double size =
-        both_signs ? std::pow(kSignedRatio, std::floor(0.5 * static_cast<double>(k)) - 3.0) *
-                         (k % 2 ? -1.0 : 1.0)
-                   : std::pow(kPositiveRatio, static_cast<double>(k) - (is_limit ? 2.0 : 6.0));
+        both_signs
+            ? std::pow(kSignedRatio, place(of_sign) - 3.0) * (k % 2 ? -1.0 : 1.0)
+            : std::pow(kPositiveRatio, place(static_cast<double>(k)) - (is_limit ? 2.0 : 6.0));
     points.col(k) = typical;
     scale_size(parameters, size, points.col(k));
   }

@@ -7,15 +7,16 @@
 
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/free_parameter.h"
+#include "estimator/greybox/selection/problem.h"
 #include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
 
 /// Columns of search values (searched.size() rows). The first parameter takes sizes over decades,
 /// with both signs where allowed; parameters in the same unit scale with it; rest positions lie
-/// within the motion.
+/// within the motion. `count`: kTrialSizes, or half as many in wider steps.
 [[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters,
-                                          const FitDataset& data);
+                                          const FitDataset& data, Eigen::Index count = kTrialSizes);
 
 /// True when the effect has a wavelength and a phase.
 [[nodiscard]] bool is_periodic(const std::vector<FreeParameter>& parameters);

@@ -136,7 +136,8 @@ TEST(Laws, LibraryEffectsBesideLawsKeepTheSizesOfTheRig) {
     if (effect.name == "null_bias") effect.parameters.front().typical = kTypical;
   }
   const std::optional<LawSearch> found =
-      search_laws(context, first_stage(context), "", {"null_bias"}, LawChoice::unexplained);
+      search_laws(context, first_stage(context), "", {"null_bias"}, LawChoice::unexplained,
+                  kMostInnovationEffects);
   ASSERT_TRUE(found);
   const std::vector<plant_sim::EffectInfo>& candidates = found->context.problem.candidate_effects;
   const auto bias = std::find_if(candidates.begin(), candidates.end(),

@@ -74,6 +74,22 @@ TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
   }
 }
 
+TEST(TrialSizes, OfHalfTheNumberStandBetweenTheOthersInStepsTwiceAsWide) {
+  for (const std::string effect : {"null_bias", "quadratic_damping"}) {
+    const std::vector<greybox::FreeParameter> parameters = own(effect);
+    const Eigen::VectorXd all = trial_sizes(parameters, motion()).row(0);
+    const Eigen::VectorXd half = trial_sizes(parameters, motion(), kTrialSizes / 2).row(0);
+    ASSERT_EQ(half.size(), 4) << effect;
+    // sizes of one sign alternate with those of the other
+    const Eigen::Index stride = parameters.front().lower < 0.0 ? 2 : 1;
+    for (Eigen::Index k = 0; k < half.size(); ++k) {
+      const Eigen::Index first = stride * 2 * (k / stride) + k % stride;
+      EXPECT_NEAR(half[k] * half[k], all[first] * all[first + stride], 1e-9 * half[k] * half[k])
+          << effect << ' ' << k;
+    }
+  }
+}
+
 TEST(TrialSizes, PutARestPositionWhereTheMotionIs) {
   const std::vector<greybox::FreeParameter> parameters = own("load_spring");
   const std::size_t rest = at(parameters, ".rest_m");
