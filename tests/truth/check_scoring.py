@@ -118,6 +118,16 @@ class Scoring(unittest.TestCase):
         self.expect("no", True, "outside_laws", of, answer("missing", "friction"))
         self.expect("no", False, "leftout", of, answer("nothing_missing"))
 
+    def test_a_parameter_that_goes_with_time_is_a_law_of_time(self):
+        drift = record(left_out={**LAW, "name": "gain_drift", "classes": ["gain"],
+                                 "variables": ["time"]})
+        gain = [{"parameter": "valve_gain_m_per_V"}]
+        self.expect("yes", False, "leftout", drift, answer("changing", changing=gain))
+        damping = [{"parameter": "damping_N_s_per_m"}]
+        self.expect("no", False, "leftout", drift, answer("changing", changing=damping))
+        of_speed = record(left_out={**LAW, "classes": ["gain"], "variables": ["v"]})
+        self.expect("no", False, "leftout", of_speed, answer("changing", changing=gain))
+
     def test_a_law_is_right_by_site_variable_family_and_error(self):
         of = record(left_out={**LAW, "name": "cubic_damping", "classes": ["force"],
                               "variables": ["v", "speed"]}, outside=SHAKEN)

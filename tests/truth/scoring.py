@@ -176,7 +176,9 @@ def score(plan, record, answer):
         result.update(judge_law(record, answer))
         result["wrong"] = claims and bool(named) and not law_named
         if plan == "leftout":
-            told = verdict in ("unexplained", "learned") or law_named
+            # a parameter that goes with time is a law of time
+            told = (verdict in ("unexplained", "learned") or law_named
+                    or verdict == "changing" and result["law_site"] and result["law_variable"])
             result["right"] = "yes" if told else "no"
         elif verdict != "failed":
             result["right"] = "no" if result["wrong"] else "yes"

@@ -54,15 +54,17 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
 }
 
 std::string undetermined_words(const selection::Diagnosis& d) {
+  if (d.ambiguous.empty()) {
+    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) +
+           ". A longer record, or one with more motion, tells whether.";
+  }
   const std::vector<std::string> sure = undisputed(d);
   return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
          (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
 }
 
 std::string missing_words(const selection::Diagnosis& d) {
-  const std::vector<std::string> established = d.established();
-  if (established.empty()) return "Perhaps missing: " + effects_words(d, d.missing) + ".";
-  return "Missing: " + effects_words(d, established) + ".";
+  return "Missing: " + effects_words(d, d.established()) + ".";
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {

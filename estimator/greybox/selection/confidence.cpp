@@ -197,4 +197,11 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   return possible;
 }
 
+void weigh_doubts(Diagnosis& diagnosis) {
+  diagnosis.possible = possible_effects(diagnosis);
+  if (diagnosis.verdict == Verdict::missing && diagnosis.established().empty()) {
+    diagnosis.verdict = Verdict::undetermined;
+  }
+}
+
 }  // namespace estimator::greybox::selection

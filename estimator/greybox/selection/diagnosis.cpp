@@ -220,7 +220,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);
   }
-  result.possible = possible_effects(result);
+  weigh_doubts(result);
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -53,6 +53,16 @@ TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
   EXPECT_THAT(remarks(outcome), Contains("Move faster."));
 }
 
+TEST(Words, WhatMayBeMissingIsNotClaimed) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::undetermined;
+  d.possible = {{"friction", selection::Doubt::within_error}};
+  EXPECT_THAT(verdict_words(d), HasSubstr("Undetermined: perhaps missing: friction: Coulomb"));
+  EXPECT_THAT(remarks(outcome),
+              Contains("Not established: friction (its size is within its error)."));
+}
+
 TEST(Words, WhatIsNotEstablishedIsNotMissingInAnyCase) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;

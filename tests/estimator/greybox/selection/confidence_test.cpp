@@ -35,6 +35,18 @@ TEST(Confidence, ASizeWithinItsErrorIsNotEstablishedWhateverItsRefinements) {
   EXPECT_THAT(named(unexplained()), ElementsAre("backlash within_error"));
 }
 
+TEST(Confidence, NothingIsMissingForSureWhereNoEffectIsEstablished) {
+  Diagnosis d = unexplained();
+  d.verdict = Verdict::missing;
+  weigh_doubts(d);
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.established(), ElementsAre("friction"));
+  d.parameters[1].std_error = d.parameters[1].value;
+  weigh_doubts(d);
+  EXPECT_EQ(d.verdict, Verdict::undetermined);
+  EXPECT_THAT(d.established(), IsEmpty());
+}
+
 TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {
   Diagnosis d = unexplained();
   d.parameters[1].at_bound = true;
