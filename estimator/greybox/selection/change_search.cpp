@@ -115,6 +115,30 @@ InnovationStage polished(const ChangeProposal& taken, const InnovationStage& fou
   return stage;
 }
 
+/// Takes a fitted proposal into the stage.
+void take(const ChangeProposal& taken, const InnovationStage& fitted,
+          std::vector<std::string> rivals, InnovationStage& stage, ChangeSearch& search) {
+  ParameterChange change;
+  change.parameter = taken.score.parameter.name;
+  change.rivals = std::move(rivals);
+  InnovationCandidate candidate;
+  candidate.effect = name_of(taken.score);
+  candidate.settled = true;
+  candidate.penalty_nats = penalty_nats(fitted.model.fitted, stage.model.fitted);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(fitted));
+  const InnovationStage before = std::move(stage);
+  stage = polished(taken, fitted, wide(taken.context.options.threads));
+  candidate.fitted = stage.model.fitted;
+  candidate.fitted.jacobian.resize(0, 0);
+  InnovationRound round{before.model, {std::move(candidate)}};
+  round.before.fitted.jacobian.resize(0, 0);
+  search.innovations.gains_nats[round.candidates.front().effect] =
+      round.candidates.front().gain_nats;
+  search.innovations.rounds.push_back(std::move(round));
+  search.changes.push_back(std::move(change));
+  search.context = taken.context;
+}
+
 /// Adds the likeliest change; false when none gains enough.
 bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch& search,
                 std::vector<ChangeScore>& scores_taken) {
@@ -140,33 +164,13 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
   }
   const std::size_t chosen = best_of(proposals, stages);
-  const ChangeProposal& taken = proposals[chosen];
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
-  ParameterChange change;
-  change.parameter = taken.score.parameter.name;
-  change.rivals = rivals_of(proposals, stages, chosen);
-  InnovationCandidate candidate;
-  candidate.effect = name_of(taken.score);
-  candidate.settled = true;
-  candidate.penalty_nats = penalty_nats(stages[chosen].model.fitted, stage.model.fitted);
-  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(stages[chosen]));
-  const InnovationStage before = std::move(stage);
-  stage = polished(taken, stages[chosen], wide(plain.options.threads));
-  candidate.fitted = stage.model.fitted;
-  candidate.fitted.jacobian.resize(0, 0);
-  InnovationRound round{before.model, {std::move(candidate)}};
-  round.before.fitted.jacobian.resize(0, 0);
-  search.innovations.gains_nats[round.candidates.front().effect] =
-      round.candidates.front().gain_nats;
-  search.innovations.rounds.push_back(std::move(round));
-  search.changes.push_back(std::move(change));
-  scores_taken.push_back(taken.score);
-  search.context = taken.context;
+  take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
+  scores_taken.push_back(proposals[chosen].score);
   return true;
 }
 
-/// True where a curve over the motion promises more than any change in time: then what is missing
-/// is a law, and a change would follow it at best.
+/// True where a curve over the motion promises more than any change in time.
 bool motion_explains_more(const InnovationStage& stage) {
   double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
   for (const ChangeScore& score : change_scores(stage)) {
@@ -197,10 +201,30 @@ ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
   return search;
 }
 
+/// The last of two changes without the first, which may have stood for it while it was not known;
+/// none where that is clearly less likely than both.
+std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stage,
+                                       const std::vector<ChangeScore>& taken,
+                                       const ChangeSearch& both) {
+  const ChangeProposal last = proposal(search.context, stage, taken.back());
+  const InnovationStage alone = fitted(last, stage, wide(search.context.options.threads));
+  if (!std::isfinite(alone.minus_two_log)) return {};
+  take(last, alone, both.changes.back().rivals, stage, search);
+  ChangeSearch found = concluded(std::move(search), std::move(stage), {taken.back()});
+  const double enough_nats = kEvidence_nats + both.innovations.inexact_nats;
+  if (!(penalised(found.innovations.final) <
+        penalised(both.innovations.final) + 2.0 * enough_nats)) {
+    return {};
+  }
+  return found;
+}
+
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
 /// first one leaves.
 std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage stage) {
   const SearchContext plain = search.context;
+  const ChangeSearch begun = search;
+  const InnovationStage first = stage;
   std::optional<ChangeSearch> best;
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
@@ -210,18 +234,23 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
     if (best && !(cost(found) < cost(*best) - 2.0 * enough_nats)) break;
     best = std::move(found);
   }
-  if (!best || plain.cancelled() || best->innovations.physics_missing()) return {};
+  if (!best || plain.cancelled()) return {};
+  if (best->changes.size() > 1) {
+    if (std::optional<ChangeSearch> one = last_alone(begun, first, taken, *best)) best = one;
+  }
+  if (best->innovations.physics_missing()) return {};
   return best;
 }
 
 }  // namespace
 
-std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base) {
+std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base,
+                                           Against against) {
   if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
   ChangeSearch search{context, {}, {}};
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
-  if (motion_explains_more(stage)) return {};
+  if (against == Against::motion && motion_explains_more(stage)) return {};
   search.innovations.before = stage;
   if (std::optional<ChangeSearch> found = changes_from(search, stage)) return found;
   // a drift passes for a slow line, so that changes are sought without lines first; a strong line

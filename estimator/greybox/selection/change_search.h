@@ -16,9 +16,14 @@ struct ChangeSearch {
   std::vector<ParameterChange> changes;
 };
 
+/// Whether a change is sought where a curve over the motion promises more than any: then what is
+/// missing may be a law, which a change follows at best.
+enum class Against { motion, nothing };
+
 /// None where one or two changes leave physics unexplained. `base`: a fitted model, with effects
 /// or without.
 [[nodiscard]] std::optional<ChangeSearch> search_changes(const SearchContext& context,
-                                                         const ModelStage& base);
+                                                         const ModelStage& base,
+                                                         Against against = Against::motion);
 
 }  // namespace estimator::greybox::selection

@@ -39,12 +39,13 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
 
 }  // namespace
 
-bool date_changes(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+bool date_changes(const SearchContext& context, const ModelStage& first, Diagnosis& result,
+                  Against against) {
   std::vector<ModelStage> bases{first};
   const ModelStage& found = result.search.final;
   if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
   for (const ModelStage& base : bases) {
-    std::optional<ChangeSearch> search = search_changes(context, base);
+    std::optional<ChangeSearch> search = search_changes(context, base, against);
     if (search && take_changes(first, *search, result, result)) return true;
   }
   return false;

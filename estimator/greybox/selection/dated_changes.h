@@ -1,12 +1,13 @@
 // Diagnoses by parameters that change within the record in the place of effects.
 #pragma once
 
+#include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/diagnosis.h"
 
 namespace estimator::greybox::selection {
 
 /// Takes changes where no effect explains the record and they do. False: `result` is as before.
 [[nodiscard]] bool date_changes(const SearchContext& context, const ModelStage& first,
-                                Diagnosis& result);
+                                Diagnosis& result, Against against = Against::motion);
 
 }  // namespace estimator::greybox::selection

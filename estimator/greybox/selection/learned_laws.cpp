@@ -90,17 +90,17 @@ bool take_better(const SearchContext& context, const ModelStage& first,
 
 }  // namespace
 
-void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+bool learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
   const ModelStage named = result.search.final;
   if (take_better(context, first,
                   search_laws(context, first, "", named.added, LawChoice::unexplained,
                               kMostInnovationEffects),
                   result))
-    return;
+    return true;
   // a curve is more than a formula has to say: it comes last
-  if (take_better(context, first, search_curve(context, first), result)) return;
-  if (named.added.empty() || named.added.size() >= kStandIn) return;
-  (void)take_better(context, first, search_curve(context, named), result);
+  if (take_better(context, first, search_curve(context, first), result)) return true;
+  if (named.added.empty() || named.added.size() >= kStandIn) return false;
+  return take_better(context, first, search_curve(context, named), result);
 }
 
 bool prefer_law(const SearchContext& context, const ModelStage& first,

@@ -7,7 +7,9 @@
 namespace estimator::greybox::selection {
 
 /// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
-void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result);
+/// False: `result` is as before.
+[[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
+                              Diagnosis& result);
 
 /// Takes a law where it is clearly likelier than the effects found, at the site of a single one, or
 /// at any in place of several: the nearest effects pass for a law that the library does not have.

@@ -160,6 +160,21 @@ TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
   EXPECT_NEAR(change.to / change.from, 1.9, 0.1);
 }
 
+// As the motion grows with the time, the drift looks like a law of the motion.
+TEST(Changes, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
+  const SearchContext context = context_of(
+      "motion=chirp,length_s=30,left_out=gain_drift,left_out.size=-0.06,"
+      "outside.force_N=25,outside.corner_Hz=2.5,plant.mass_kg=48,plant.damping_N_s_per_m=1050");
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context), Against::nothing);
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  const ParameterChange& change = found->changes.front();
+  EXPECT_EQ(change.parameter, "valve_gain_m_per_V");
+  EXPECT_EQ(change.kind, ChangeKind::ramp);
+  EXPECT_NEAR(change.to / change.from, 0.94, 0.01);
+}
+
 TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,plant.damping_N_s_per_m=1000,"
