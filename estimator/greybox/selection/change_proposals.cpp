@@ -71,15 +71,20 @@ ChangeScore score_of_effect(const InnovationStage& stage, const std::string& eff
   return score;
 }
 
+/// Makes it a ramp from the first sample to the last.
+void set_throughout(ChangeScore& score, const Dataset& record) {
+  score.kind = ChangeKind::ramp;
+  score.at_s = record.t_s.front();
+  score.duration_s = record.t_s.back() - record.t_s.front();
+}
+
 /// Drifts of what a constant disturbance looks like: the innovations forget them as well.
 void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
   const Dataset& record = stage.context.problem.data.records.front();
   for (const char* effect : {"null_bias", "load_force"}) {
     ChangeScore score = score_of_effect(stage, effect);
     if (score.parameter.name.empty()) continue;
-    score.kind = ChangeKind::ramp;
-    score.at_s = record.t_s.front();
-    score.duration_s = record.t_s.back() - record.t_s.front();
+    set_throughout(score, record);
     scores.push_back(score);
   }
 }
@@ -180,6 +185,20 @@ std::vector<ChangeScore> change_candidates(const InnovationStage& stage) {
     });
   });
   return scores;
+}
+
+ChangeScore ramp_throughout(const ChangeScore& exponential, const FitSummary& fitted,
+                            const Dataset& record) {
+  ChangeScore ramp = exponential;
+  set_throughout(ramp, record);
+  const std::string own = name_of(exponential);
+  const double time_constant_s = fitted.value(own + ".time_constant_s");
+  const double reached = -std::expm1(-ramp.duration_s / time_constant_s);
+  const double from = fitted.value(exponential.parameter.name);
+  const double begun = std::isfinite(from) ? from : 0.0;  // an absent effect's
+  const double end = begun + reached * (fitted.value(own + ".value") - begun);
+  ramp.by = exponential.parameter.to_theta(end) - exponential.parameter.to_theta(begun);
+  return ramp;
 }
 
 ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted, const Dataset& record) {

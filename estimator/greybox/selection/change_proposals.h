@@ -25,6 +25,10 @@ struct ChangeProposal {
 /// load that sets in and drifts of load and null.
 [[nodiscard]] std::vector<ChangeScore> change_candidates(const InnovationStage& stage);
 
+/// A ramp from the first sample to the last, to where a fitted exponential is then.
+[[nodiscard]] ChangeScore ramp_throughout(const ChangeScore& exponential, const FitSummary& fitted,
+                                          const Dataset& record);
+
 /// A ramp about a fitted step: the likelihood decides whether it took time.
 [[nodiscard]] ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted,
                                      const Dataset& record);

@@ -163,7 +163,13 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     // a ramp finds the time of a step from farther away
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
   }
-  const std::size_t chosen = best_of(proposals, stages);
+  std::size_t chosen = best_of(proposals, stages);
+  if (proposals[chosen].score.kind == ChangeKind::exponential) {
+    // the end of an exponential that the record does not reach is no value to state
+    const std::size_t ramp =
+        also(ramp_throughout(proposals[chosen].score, stages[chosen].model.fitted, record));
+    if (penalised(stages[ramp]) < penalised(stages[chosen]) + 2.0 * kEvidence_nats) chosen = ramp;
+  }
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
   take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
   scores_taken.push_back(proposals[chosen].score);
@@ -245,12 +251,12 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
 }  // namespace
 
 std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base,
-                                           Against against) {
+                                           ChangesSought sought) {
   if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
   ChangeSearch search{context, {}, {}};
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
-  if (against == Against::motion && motion_explains_more(stage)) return {};
+  if (motion_explains_more(stage) != (sought == ChangesSought::after_laws)) return {};
   search.innovations.before = stage;
   if (std::optional<ChangeSearch> found = changes_from(search, stage)) return found;
   // a drift passes for a slow line, so that changes are sought without lines first; a strong line

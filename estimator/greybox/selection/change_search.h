@@ -16,14 +16,14 @@ struct ChangeSearch {
   std::vector<ParameterChange> changes;
 };
 
-/// Whether a change is sought where a curve over the motion promises more than any: then what is
-/// missing may be a law, which a change follows at best.
-enum class Against { motion, nothing };
+/// Where a curve over the motion promises more than any change, what is missing may be a law, which
+/// a change follows at best: there changes are sought after laws, elsewhere before them.
+enum class ChangesSought { before_laws, after_laws };
 
-/// None where one or two changes leave physics unexplained. `base`: a fitted model, with effects
-/// or without.
-[[nodiscard]] std::optional<ChangeSearch> search_changes(const SearchContext& context,
-                                                         const ModelStage& base,
-                                                         Against against = Against::motion);
+/// None where one or two changes leave physics unexplained, or where they are sought at the other
+/// time. `base`: a fitted model, with effects or without.
+[[nodiscard]] std::optional<ChangeSearch> search_changes(
+    const SearchContext& context, const ModelStage& base,
+    ChangesSought sought = ChangesSought::before_laws);
 
 }  // namespace estimator::greybox::selection

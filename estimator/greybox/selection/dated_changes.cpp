@@ -40,12 +40,12 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
 }  // namespace
 
 bool date_changes(const SearchContext& context, const ModelStage& first, Diagnosis& result,
-                  Against against) {
+                  ChangesSought sought) {
   std::vector<ModelStage> bases{first};
   const ModelStage& found = result.search.final;
   if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
   for (const ModelStage& base : bases) {
-    std::optional<ChangeSearch> search = search_changes(context, base, against);
+    std::optional<ChangeSearch> search = search_changes(context, base, sought);
     if (search && take_changes(first, *search, result, result)) return true;
   }
   return false;

@@ -8,6 +8,7 @@ namespace estimator::greybox::selection {
 
 /// Takes changes where no effect explains the record and they do. False: `result` is as before.
 [[nodiscard]] bool date_changes(const SearchContext& context, const ModelStage& first,
-                                Diagnosis& result, Against against = Against::motion);
+                                Diagnosis& result,
+                                ChangesSought sought = ChangesSought::before_laws);
 
 }  // namespace estimator::greybox::selection

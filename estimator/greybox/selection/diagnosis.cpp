@@ -211,9 +211,8 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   }
   if (!wrong_record && !context.cancelled()) (void)find_record_differences(search, first, result);
   if (result.verdict == Verdict::unexplained && !wrong_record && !context.cancelled()) {
-    // a gain that drifts while the motion grows looks like a law until laws have failed
     if (!date_changes(search, first, result) && !learn_laws(search, first, result)) {
-      (void)date_changes(search, first, result, Against::nothing);
+      (void)date_changes(search, first, result, ChangesSought::after_laws);
     }
   }
   if (result.verdict == Verdict::nothing_missing && !context.cancelled() &&
