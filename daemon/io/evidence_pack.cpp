@@ -184,7 +184,7 @@ void prune_packs(const fs::path& folder, std::int64_t packs, std::int64_t bytes,
     if (name.starts_with(kPartial)) fs::remove_all(entry.path(), error);
     if (name.starts_with(kName) && entry.is_directory(error)) found.push_back(entry.path());
   }
-  // Those of other runs by their names, which begin with their time.
+  // packs of other runs sort by their names, which begin with their time
   const auto position = [&](const fs::path& pack) {
     const auto at = std::find(own.begin(), own.end(), pack);
     return at == own.end() ? std::ptrdiff_t{-1} : at - own.begin();

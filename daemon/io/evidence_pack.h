@@ -48,8 +48,8 @@ using OwnPacks = std::vector<std::filesystem::path>;
 [[nodiscard]] int write_pack(const std::filesystem::path& folder, const EvidenceFacts& facts,
                              const PackContents& contents, OwnPacks& own);
 
-/// Removes the oldest folders beyond the limits, those of other runs first, and incomplete folders
-/// of an interrupted daemon.
+/// Removes the oldest folders beyond the limits, those of other runs first, and the incomplete
+/// folders that an interrupted daemon leaves.
 void prune_packs(const std::filesystem::path& folder, std::int64_t packs, std::int64_t bytes,
                  OwnPacks& own);
 

@@ -25,7 +25,7 @@ struct Formula {
   ExpressionProgram memory;  ///< dz/dt, where it remembers
   bool remembers = false;
   std::vector<ParameterInfo> parameters;
-  std::array<VariableRange, kSignals> ranges;  ///< of the signals; 0..0 where there is none
+  std::array<VariableRange, kSignals> ranges;  ///< one per signal; 0..0 where there is none
   /// Signals whose values the formula or its memory depends on.
   [[nodiscard]] std::vector<Signal> reads() const;
 };

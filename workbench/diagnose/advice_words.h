@@ -26,7 +26,7 @@ namespace selection = estimator::greybox::selection;
 [[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                                 const std::string& plant);
 
-/// For a record within which something changes.
-[[nodiscard]] std::string words_for_changes();
+/// For changes within a record, or for differences between records.
+[[nodiscard]] std::string words_for_changes(const std::vector<selection::ParameterChange>& changes);
 
 }  // namespace workbench::diagnose

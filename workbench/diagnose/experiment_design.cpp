@@ -120,7 +120,7 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
   } else if (found.verdict == selection::Verdict::unexplained) {
     result.advice = advice_for_unexplained(found.where, problem.model.plant);
   } else if (found.verdict == selection::Verdict::changing) {
-    result.advice = words_for_changes();
+    result.advice = words_for_changes(found.changing);
   }
   if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
   result.advice += for_rivals;

@@ -25,7 +25,7 @@ struct ChangeScore {
   double by = 0.0;               ///< change of the search value, estimated
   double gain_nats = 0.0;        ///< over the same effect throughout, where it is absent
   double throughout_nats = 0.0;  ///< gain of an absent effect throughout, without its change
-  std::string record{};          ///< of ChangeKind::record: where the parameter differs
+  std::string record{};          ///< where the parameter differs, for ChangeKind::record
 };
 
 /// The likeliest time of each kind for every parameter, best first; none for several records.

@@ -198,7 +198,7 @@ class Dictionary {
   }
 
   void add_mount() {
-    constexpr double kRate_per_s = 12.0;  // of a motion at 2 Hz
+    constexpr double kRate_per_s = 12.0;  // the motion has about 2 Hz
     add("mount_compliance", "sensor mount that yields to the acceleration", "sensor",
         "y_m + compliance_s2 * a_mps2",
         {size("compliance_s2", 1e-3 * rig_.length_m / (kRate_per_s * rig_.speed_mps), Sign::both)},

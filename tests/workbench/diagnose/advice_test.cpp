@@ -150,6 +150,15 @@ TEST(Advice, NamesNoValveAndNoChambersWhereThePlantHasNone) {
   EXPECT_EQ(servo.find("site = \"force\""), std::string::npos) << servo;
 }
 
+TEST(AdviceForChanges, AsksAboutTheRecordThatDiffersOrAboutTheTimeWithinOne) {
+  selection::ParameterChange change;
+  change.parameter = "mass_kg";
+  EXPECT_THAT(words_for_changes({change}), HasSubstr("during the record"));
+  change.record = "tuesday.csv";
+  EXPECT_THAT(words_for_changes({change}),
+              AllOf(HasSubstr("for tuesday.csv"), Not(HasSubstr("during the record"))));
+}
+
 TEST(MotionWords, TellKindNumbersPlaceAndLength) {
   monitor::control::ReferenceConfig reference;
   reference.kind = "multisine";
