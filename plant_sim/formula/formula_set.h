@@ -215,7 +215,7 @@ class FormulaSet {
 
     FormulaView formula;
     ExpressionEvaluator<S> run;
-    ExpressionEvaluator<S> rate;  ///< the memory changes at
+    ExpressionEvaluator<S> rate;  ///< evaluates dz/dt of the memory
     S memory = 0.0;
     mutable S own = 0.0;  ///< of a chained formula: its own variable when it was last evaluated
     std::vector<S> values;

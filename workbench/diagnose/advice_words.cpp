@@ -181,12 +181,21 @@ std::string words_to_excite(const std::string& motion) {
   return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
 }
 
+std::string words_for_doubt() {
+  return "A longer record, or one with more motion, tells whether it is missing.";
+}
+
 std::string words_for_changes(const std::vector<selection::ParameterChange>& changes) {
-  const bool between = std::all_of(changes.begin(), changes.end(),
-                                   [](const auto& change) { return !change.record.empty(); });
+  const bool between =
+      !changes.empty() && std::all_of(changes.begin(), changes.end(),
+                                      [](const auto& change) { return !change.record.empty(); });
   if (between) {
-    return "Ask what was switched, loaded or set differently for " + changes.front().record +
-           ", and repeat it with that as it was in the others.";
+    std::vector<std::string> records;
+    for (const selection::ParameterChange& change : changes) records.push_back(change.record);
+    std::sort(records.begin(), records.end());
+    records.erase(std::unique(records.begin(), records.end()), records.end());
+    return "Ask what was switched, loaded or set differently for " +
+           config::schema::listed(records) + ", and repeat it with that as it was in the others.";
   }
   return "Ask what was switched, loaded or warmed up during the record, and repeat it with that "
          "held.";

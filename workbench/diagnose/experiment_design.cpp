@@ -121,6 +121,8 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
     result.advice = advice_for_unexplained(found.where, problem.model.plant);
   } else if (found.verdict == selection::Verdict::changing) {
     result.advice = words_for_changes(found.changing);
+  } else if (found.verdict == selection::Verdict::undetermined && found.ambiguous.empty()) {
+    result.advice = words_for_doubt();
   }
   if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
   result.advice += for_rivals;

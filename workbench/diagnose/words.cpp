@@ -55,8 +55,7 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
 
 std::string undetermined_words(const selection::Diagnosis& d) {
   if (d.ambiguous.empty()) {
-    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) +
-           ". A longer record, or one with more motion, tells whether.";
+    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) + ".";
   }
   const std::vector<std::string> sure = undisputed(d);
   return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +

@@ -71,7 +71,7 @@ ChangeScore score_of_effect(const InnovationStage& stage, const std::string& eff
   return score;
 }
 
-/// Makes it a ramp from the first sample to the last.
+/// Makes the change a ramp from the first sample to the last.
 void set_throughout(ChangeScore& score, const Dataset& record) {
   score.kind = ChangeKind::ramp;
   score.at_s = record.t_s.front();
@@ -195,9 +195,10 @@ ChangeScore ramp_throughout(const ChangeScore& exponential, const FitSummary& fi
   const double time_constant_s = fitted.value(own + ".time_constant_s");
   const double reached = -std::expm1(-ramp.duration_s / time_constant_s);
   const double from = fitted.value(exponential.parameter.name);
-  const double begun = std::isfinite(from) ? from : 0.0;  // an absent effect's
+  const double begun = std::isfinite(from) ? from : 0.0;  // 0: the effect is absent
   const double end = begun + reached * (fitted.value(own + ".value") - begun);
-  ramp.by = exponential.parameter.to_theta(end) - exponential.parameter.to_theta(begun);
+  const double by = exponential.parameter.to_theta(end) - exponential.parameter.to_theta(begun);
+  if (std::isfinite(by)) ramp.by = by;
   return ramp;
 }
 

@@ -12,7 +12,8 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostChanges = 2;
-/// Gain of a curve over the motion, in those of the best change, from which on no change is sought.
+/// Gain of a curve over the motion, in those of the best change, from which on laws are sought
+/// first.
 constexpr double kMotionExplains = 2.0;
 /// A change counts together with its effect from this share of the effect's gain on: a curve has a
 /// constant of its own.
@@ -21,6 +22,8 @@ constexpr double kChangeOfEffect = 0.05;
 constexpr double kScanned_s = 1.0;
 constexpr double kScanStep = 4.0;
 constexpr int kScans = 3;
+/// Time constants after which an exponential has settled.
+constexpr double kSettledAfter = 3.0;
 
 /// Sets the time of a change to the likeliest within kScanned_s, the other parameters held: the
 /// likelihood has a minimum about every pause of the motion. False where it is that already.
@@ -88,7 +91,9 @@ std::size_t best_of(const std::vector<ChangeProposal>& proposals,
 std::vector<std::string> rivals_of(const std::vector<ChangeProposal>& proposals,
                                    const std::vector<InnovationStage>& stages, std::size_t chosen) {
   const std::string& own = proposals[chosen].score.parameter.name;
-  const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
+  double most = penalised(stages[chosen]);
+  for (const InnovationStage& stage : stages) most = std::min(most, penalised(stage));
+  most += 2.0 * kEvidence_nats;
   std::vector<std::string> rivals;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const std::string& other = proposals[i].score.parameter.name;
@@ -139,6 +144,15 @@ void take(const ChangeProposal& taken, const InnovationStage& fitted,
   search.context = taken.context;
 }
 
+/// True for an exponential that has not settled at the end of the record.
+bool ends_beyond(const Dataset& record, const ChangeProposal& change,
+                 const InnovationStage& fitted) {
+  if (change.score.kind != ChangeKind::exponential) return false;
+  const double time_constant_s =
+      fitted.model.fitted.value(name_of(change.score) + ".time_constant_s");
+  return kSettledAfter * time_constant_s > record.t_s.back() - record.t_s.front();
+}
+
 /// Adds the likeliest change; false when none gains enough.
 bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch& search,
                 std::vector<ChangeScore>& scores_taken) {
@@ -164,11 +178,13 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
   }
   std::size_t chosen = best_of(proposals, stages);
-  if (proposals[chosen].score.kind == ChangeKind::exponential) {
-    // the end of an exponential that the record does not reach is no value to state
+  if (ends_beyond(record, proposals[chosen], stages[chosen])) {
+    // the record does not reach its end, which is no value to state
     const std::size_t ramp =
         also(ramp_throughout(proposals[chosen].score, stages[chosen].model.fitted, record));
-    if (penalised(stages[ramp]) < penalised(stages[chosen]) + 2.0 * kEvidence_nats) chosen = ramp;
+    const double most = std::min(penalised(stages[chosen]) + 2.0 * kEvidence_nats,
+                                 penalised(stage) - 2.0 * kEvidence_nats);
+    if (penalised(stages[ramp]) < most) chosen = ramp;
   }
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
   take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
@@ -242,7 +258,10 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
   }
   if (!best || plain.cancelled()) return {};
   if (best->changes.size() > 1) {
-    if (std::optional<ChangeSearch> one = last_alone(begun, first, taken, *best)) best = one;
+    const std::optional<ChangeSearch> one = last_alone(begun, first, taken, *best);
+    if (one && (!one->innovations.physics_missing() || best->innovations.physics_missing())) {
+      best = one;
+    }
   }
   if (best->innovations.physics_missing()) return {};
   return best;

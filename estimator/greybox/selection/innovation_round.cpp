@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "estimator/greybox/selection/confidence.h"
@@ -109,9 +110,16 @@ class RoundTrials {
     InnovationRound round{stage_.model, {}, chosen != none()};
     round.before.fitted.jacobian.resize(0, 0);
     if (chosen != none()) round.candidates.push_back(trials_[chosen].candidate);
-    for (std::size_t i = 0; i < trials_.size(); ++i) {
-      if (i != chosen) round.candidates.push_back(trials_[i].candidate);
-    }
+    std::vector<std::size_t> others(trials_.size());
+    std::iota(others.begin(), others.end(), std::size_t{0});
+    std::erase(others, chosen);
+    std::stable_sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) {
+      const InnovationCandidate& one = trials_[a].candidate;
+      const InnovationCandidate& other = trials_[b].candidate;
+      if (one.settled != other.settled) return one.settled;
+      return one.gain_nats > other.gain_nats;
+    });
+    for (const std::size_t i : others) round.candidates.push_back(trials_[i].candidate);
     return round;
   }
 
@@ -234,7 +242,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptio
   RoundTrials trials(plain, stage, static_cast<int>(rounds.size()) + 1);
   trials.settle_finalists(std::move(first));
   std::size_t chosen = trials.choose(options.evidence_nats);
-  // simulations cost as much as the rest of a round: asked where that leaves something
+  // simulations cost as much as the rest of a round: they run where that leaves something
   const InnovationStage& reached = chosen == trials.none() ? stage : trials.stage(chosen);
   if (may_grow && (simulated.knows(stage.model) || leaves_physics(reached))) {
     SimulatedEffects beside = simulated.beside(plain, stage.model);

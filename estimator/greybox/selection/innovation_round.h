@@ -21,7 +21,7 @@ enum class Candidates { effects_and_lines, lines };
 struct RoundOptions {
   Candidates candidates = Candidates::effects_and_lines;
   std::size_t most_effects = 0;
-  double evidence_nats = kEvidence_nats;  ///< what a candidate must gain
+  double evidence_nats = kEvidence_nats;  ///< a candidate must gain as much
 };
 
 /// Takes the likeliest candidate into the stage; false when nothing gains enough. `dropped`:

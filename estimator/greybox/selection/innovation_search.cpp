@@ -240,6 +240,7 @@ std::vector<InnovationStage> exchanges_of(const SearchContext& with_holdouts,
   InnovationStage without = stage_without(context, search, search.final, i);
   without.context.problem.model = context.problem.model;
   without.context.problem.candidate_effects = context.problem.candidate_effects;
+  without.context.problem.trial_sizes = context.problem.trial_sizes;
   return exchanges(context, search.final, search.final.model.added[i], without, simulated);
 }
 

@@ -48,7 +48,7 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
-  SimulatedEffectsMemo simulated;  ///< of the search's candidates
+  SimulatedEffectsMemo simulated;  ///< kept from round to round
 
   /// True when a load sets in, which no curve over the motion explains better and which stands out
   /// from the disturbance's own jumps.
@@ -63,7 +63,7 @@ struct InnovationSearch {
 
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
 /// the best that it has found: this is taken where its likelihood is the higher one. Records that
-/// only score take no part. `most_effects`: that the search adds.
+/// only score take no part. The search adds at most `most_effects`.
 [[nodiscard]] InnovationSearch search_innovations(
     const SearchContext& context, const ModelStage& first, const SearchBranch& held,
     std::size_t most_effects = kMostInnovationEffects);

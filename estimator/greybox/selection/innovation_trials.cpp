@@ -165,7 +165,10 @@ SimulatedEffects simulated_effects(const Round& round) {
   return result;
 }
 
-std::vector<std::string> sorted(std::vector<std::string> names) {
+/// An effect may have more or fewer refinements, so that its name does not tell the model.
+std::vector<std::string> parameters_of(const ModelStage& model) {
+  std::vector<std::string> names;
+  for (const FreeParameter& p : model.fitted.parameters) names.push_back(p.name);
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -174,18 +177,18 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
 
 SimulatedEffectsMemo::SimulatedEffectsMemo(const std::vector<Round>& known) {
   for (const Round& round : known)
-    known_.emplace(sorted(round.before.added), simulated_effects(round));
+    known_.emplace(parameters_of(round.before), simulated_effects(round));
 }
 
 const SimulatedEffects& SimulatedEffectsMemo::beside(const SearchContext& plain,
                                                      const ModelStage& model) {
-  const auto [at, is_new] = known_.try_emplace(sorted(model.added));
+  const auto [at, is_new] = known_.try_emplace(parameters_of(model));
   if (is_new) at->second = simulated_effects(plain, model);
   return at->second;
 }
 
 bool SimulatedEffectsMemo::knows(const ModelStage& model) const {
-  return known_.contains(sorted(model.added));
+  return known_.contains(parameters_of(model));
 }
 
 void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,

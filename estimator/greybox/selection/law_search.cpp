@@ -7,7 +7,8 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostLaws = 2;
-/// The sizes of laws and of the effects beside them are scaled to the rig.
+/// The sizes of laws and of the effects beside them are scaled to the rig: half as many, each
+/// within the range over which the linear estimate may move it, cover what is plausible.
 constexpr Eigen::Index kLawSizes = kTrialSizes / 2;
 
 SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,

@@ -116,7 +116,7 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
       search_laws(context, first, site, several ? added : std::vector<std::string>(),
-                  LawChoice::against_effects, added.size() + 1);
+                  LawChoice::against_effects, std::min(added.size() + 1, kMostInnovationEffects));
   return found && found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);

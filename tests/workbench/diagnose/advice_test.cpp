@@ -157,6 +157,10 @@ TEST(AdviceForChanges, AsksAboutTheRecordThatDiffersOrAboutTheTimeWithinOne) {
   change.record = "tuesday.csv";
   EXPECT_THAT(words_for_changes({change}),
               AllOf(HasSubstr("for tuesday.csv"), Not(HasSubstr("during the record"))));
+  selection::ParameterChange other = change;
+  other.record = "monday.csv";
+  EXPECT_THAT(words_for_changes({change, other, change}),
+              HasSubstr("for monday.csv and tuesday.csv, and"));
 }
 
 TEST(MotionWords, TellKindNumbersPlaceAndLength) {
