@@ -9,6 +9,7 @@
 #include "config/schema/error.h"
 #include "plant_sim/model_file.h"
 #include "tests/workbench/run_command.h"
+#include "tests/workbench/simulate/program.h"
 #include "workbench/model/kinds.h"
 
 namespace workbench::cli {
@@ -23,7 +24,8 @@ const std::vector<std::string> kCylinder{
     "--supply-bar", "140", "--rated-flow-lpm", "40", "--rated-drop-bar", "70"};
 
 plant_sim::ModelFile made(const std::string& kind, const std::vector<std::string>& flags) {
-  const std::string file = testing::TempDir() + "spoolwatch_new_" + kind + ".toml";
+  const std::string file =
+      workbench::simulate::process_file("spoolwatch_new_" + std::string(kind) + ".toml");
   std::filesystem::remove(file);
   std::vector<std::string> arguments{kind, "-o", file};
   arguments.insert(arguments.end(), flags.begin(), flags.end());
@@ -146,7 +148,8 @@ TEST(New, RefusesInOneLineWithTheNearName) {
 /// The flags of kCylinder with one value replaced, or one added.
 std::vector<std::string> cylinder_with(const std::string& kind, const std::string& flag,
                                        const std::string& value) {
-  std::vector<std::string> flags{kind, "-o", testing::TempDir() + "spoolwatch_new_no.toml"};
+  std::vector<std::string> flags{kind, "-o",
+                                 workbench::simulate::process_file("spoolwatch_new_no.toml")};
   flags.insert(flags.end(), kCylinder.begin(), kCylinder.end());
   const auto found = std::find(flags.begin(), flags.end(), flag);
   if (found == flags.end()) {
@@ -177,20 +180,22 @@ TEST(New, NamesTheOptionItsValueAndItsRange) {
           << kind;
     }
   }
-  EXPECT_THAT(refused({"velocity-servo", "-o", testing::TempDir() + "spoolwatch_new_no.toml",
-                       "--full-speed-mmps", "1e5", "--full-command-V", "0.5"}),
-              testing::AllOf(HasSubstr("--full-speed-mmps (is 100000; allowed: 0.001 to 50000)"),
-                             HasSubstr("--full-command-V (is 0.5; allowed: 1 to 1000)")));
-  EXPECT_THAT(refused({"screw-axis", "-o", testing::TempDir() + "spoolwatch_new_no.toml",
-                       "--mass-kg", "0.1", "--lead-mm", "0.1", "--inertia-kgcm2", "1e6",
-                       "--torque-constant-Nm-per-A", "1", "--drive-A-per-V", "1"}),
-              HasSubstr("mass_kg would be 3.948e+11, allowed: 1e-06 to 1e+06; change --lead-mm"));
+  EXPECT_THAT(
+      refused({"velocity-servo", "-o", workbench::simulate::process_file("spoolwatch_new_no.toml"),
+               "--full-speed-mmps", "1e5", "--full-command-V", "0.5"}),
+      testing::AllOf(HasSubstr("--full-speed-mmps (is 100000; allowed: 0.001 to 50000)"),
+                     HasSubstr("--full-command-V (is 0.5; allowed: 1 to 1000)")));
+  EXPECT_THAT(
+      refused({"screw-axis", "-o", workbench::simulate::process_file("spoolwatch_new_no.toml"),
+               "--mass-kg", "0.1", "--lead-mm", "0.1", "--inertia-kgcm2", "1e6",
+               "--torque-constant-Nm-per-A", "1", "--drive-A-per-V", "1"}),
+      HasSubstr("mass_kg would be 3.948e+11, allowed: 1e-06 to 1e+06; change --lead-mm"));
 }
 
 /// Each question of each kind, at either end of its range and beyond, the others in the middle: a
 /// file that reads back and whose numbers follow, or a message with the option and its range.
 TEST(New, TakesOrRefusesEveryNumberByName) {
-  const std::string file = testing::TempDir() + "spoolwatch_new_edge.toml";
+  const std::string file = workbench::simulate::process_file("spoolwatch_new_edge.toml");
   for (const model::Kind& kind : model::kinds()) {
     for (const model::Question& asked : kind.questions) {
       for (const double value : {asked.min, asked.max, 2.0 * asked.max, asked.min - 1.0}) {
@@ -214,7 +219,7 @@ TEST(New, TakesOrRefusesEveryNumberByName) {
 }
 
 TEST(New, SaysThatAnUndampedAxisIsNeverSteady) {
-  const std::string file = testing::TempDir() + "spoolwatch_new_undamped.toml";
+  const std::string file = workbench::simulate::process_file("spoolwatch_new_undamped.toml");
   for (const char* drive : {"0.6", "6000"}) {
     std::filesystem::remove(file);
     EXPECT_THAT(printed_by(add_new, {"linear-motor", "-o", file, "--mass-kg", "12",
@@ -226,7 +231,7 @@ TEST(New, SaysThatAnUndampedAxisIsNeverSteady) {
 
 TEST(New, KeepsAFileThatExists) {
   (void)made("rotary-servo", {"--full-speed-rpm", "30"});
-  const std::string file = testing::TempDir() + "spoolwatch_new_rotary-servo.toml";
+  const std::string file = workbench::simulate::process_file("spoolwatch_new_rotary-servo.toml");
   EXPECT_THAT(refused({"rotary-servo", "-o", file, "--full-speed-rpm", "40"}),
               HasSubstr("exists; allowed: a new file"));
   EXPECT_NEAR(*plant_sim::load_model(file).value("gain_mps_per_V"), M_PI / 10.0, 1e-3);
@@ -234,9 +239,10 @@ TEST(New, KeepsAFileThatExists) {
 
 TEST(New, RefusesANameThatIsNoPlainText) {
   for (const char* name : {"a\"b", "a\\b", "a\nb"}) {
-    EXPECT_THAT(refused({"rotary-servo", "-o", testing::TempDir() + "spoolwatch_no.toml", "--name",
-                         name, "--full-speed-rpm", "40"}),
-                HasSubstr("--name: has a quote"));
+    EXPECT_THAT(
+        refused({"rotary-servo", "-o", workbench::simulate::process_file("spoolwatch_no.toml"),
+                 "--name", name, "--full-speed-rpm", "40"}),
+        HasSubstr("--name: has a quote"));
   }
 }
 

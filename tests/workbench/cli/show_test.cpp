@@ -8,6 +8,7 @@
 
 #include "config/schema/error.h"
 #include "tests/workbench/run_command.h"
+#include "tests/workbench/simulate/program.h"
 
 namespace workbench::cli {
 namespace {
@@ -20,7 +21,7 @@ std::string model(const char* name) {
 }
 
 std::string written(const std::string& text) {
-  const std::string file = testing::TempDir() + "spoolwatch_show.toml";
+  const std::string file = workbench::simulate::process_file("spoolwatch_show.toml");
   std::ofstream(file) << "schema_version = 1\n" << text;
   return file;
 }
@@ -177,7 +178,7 @@ TEST(Show, ListsChangesAndDerivesFromTheModelBeforeThem) {
        {"thesis", "single_rod_cylinder", "velocity_servo", "force_driven_axis"}) {
     std::ifstream in(model(plant));
     std::string before{std::istreambuf_iterator<char>(in), {}};
-    const std::string file = testing::TempDir() + "spoolwatch_show_change.toml";
+    const std::string file = workbench::simulate::process_file("spoolwatch_show_change.toml");
     const std::string name = plant == std::string("velocity_servo") ? "gain_mps_per_V" : "mass_kg";
     std::ofstream(file) << before << "\n[[change]]\nparameter = \"" << name
                         << "\"\nfactor = 2.0\nat_s = 1.0\n";

@@ -32,6 +32,12 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// A file in a folder of this process alone, gone when it ends: tests run at the same time.
+inline std::string process_file(const std::string& name) {
+  static const TemporaryFolder folder;
+  return folder.file(name);
+}
+
 inline std::string text_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
