@@ -177,6 +177,24 @@ TEST(Changes, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
   EXPECT_NEAR(change.to / change.from, 0.91, 0.01);
 }
 
+// On the way to the gain's drift a change of the mass is taken.
+TEST(Changes, AChangeThatStoodForAnotherIsDropped) {
+  const SearchContext context = context_of(
+      "motion=chirp,mismatched=1,left_out=gain_drift,left_out.size=-0.07712725666,"
+      "outside.force_N=30.11193319,outside.corner_Hz=3.054727037,outside.shake_m=9.92996e-6,"
+      "outside.shake_Hz=59.1037,plant.mass_kg=51.41498126,plant.damping_N_s_per_m=953.6266452,"
+      "plant.bulk_modulus_Pa=718647228.8,plant.dead_volume_m3=1.179306599e-05,"
+      "plant.supply_pressure_Pa=7199272.312,plant.valve_gain_m_per_V=2.798200402e-05,"
+      "plant.valve_natural_frequency_rad_per_s=653.9665836,plant.valve_damping_ratio=0.6400837709",
+      616390004);
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context), ChangesSought::after_laws);
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  EXPECT_EQ(found->changes.front().parameter, "valve_gain_m_per_V");
+  EXPECT_NEAR(found->changes.front().to / found->changes.front().from, 1.0 - 0.0771, 0.01);
+}
+
 TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,plant.damping_N_s_per_m=1000,"

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,6 +35,40 @@ TEST(InnovationSearch, AnEffectTakenBeforeALineIsExchangedForTheRightOne) {
   EXPECT_THAT(found.rounds.front().candidates.front().effect, testing::Ne("entrained_air"));
   EXPECT_THAT(found.final.model.added, ElementsAre("entrained_air"));
   EXPECT_FALSE(found.physics_missing());
+  for (const InnovationRound& round : found.rounds) {
+    const auto after_taken = round.candidates.begin() + (round.taken ? 1 : 0);
+    EXPECT_TRUE(std::is_sorted(after_taken, round.candidates.end(),
+                               [](const InnovationCandidate& a, const InnovationCandidate& b) {
+                                 if (a.settled != b.settled) return a.settled;
+                                 return a.gain_nats > b.gain_nats;
+                               }));
+  }
+}
+
+FreeParameter named(const std::string& name) {
+  FreeParameter parameter;
+  parameter.name = name;
+  return parameter;
+}
+
+// The same effect may be in a model with more or fewer refinements.
+TEST(SimulatedEffectsMemo, KnowsAModelByItsParameters) {
+  Round round;
+  round.before.fitted.parameters = {named("mass_kg"), named("second_mass.resonance_Hz")};
+  Candidate friction;
+  friction.effects = {"friction"};
+  friction.fitted_at_all = true;
+  round.candidates = {friction};
+  SimulatedEffectsMemo memo({round});
+
+  ModelStage model;
+  model.fitted.parameters = {named("second_mass.resonance_Hz"), named("mass_kg")};
+  ASSERT_TRUE(memo.knows(model));
+  const SimulatedEffects& known = memo.beside({}, model);
+  ASSERT_THAT(known.effects, SizeIs(1));
+  EXPECT_EQ(known.effects.front().effect, "friction");
+  model.fitted.parameters.push_back(named("second_mass.sensor_ratio"));
+  EXPECT_FALSE(memo.knows(model));
 }
 
 // A flow at its limit passes no pulsation; a linear response to it would leave its difference.
