@@ -23,9 +23,22 @@ std::string unit_word(std::string_view word) {
   return "";
 }
 
+bool ends_with(std::string_view text, std::string_view ending) {
+  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
+}
+
+/// The parameter that a change gives a value, "change.mass_kg" for "change.mass_kg.value" and for
+/// "change.mass_kg@monday.csv.value"; other names as they are.
+std::string_view changed_parameter(std::string_view name) {
+  constexpr std::string_view kValue = ".value";
+  if (ends_with(name, kValue)) name.remove_suffix(kValue.size());
+  return name.substr(0, name.find('@'));
+}
+
 }  // namespace
 
 std::string unit_of(std::string_view name) {
+  name = changed_parameter(name);
   // From the end, words that are units; one "per" among them divides. The first word is the name.
   std::string unit;
   std::string below;
@@ -109,12 +122,8 @@ constexpr std::array kUnits{
     PrintedUnit{"ratio", "%", 0.01, 0.0},
 };
 
-bool ends_with(std::string_view text, std::string_view ending) {
-  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
-}
-
 std::string si_unit(std::string_view name) {
-  return ends_with(name, "_ratio") ? "ratio" : unit_of(name);
+  return ends_with(changed_parameter(name), "_ratio") ? "ratio" : unit_of(name);
 }
 
 PrintedUnit unit_for(const std::string& si, double size) {

@@ -37,6 +37,13 @@ TEST(Quantity, IsShownInTheUnitThatReadsWell) {
   EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, kNone), "8000 N s2/m2");
 }
 
+TEST(Quantity, OfAChangeHasTheUnitOfTheParameterThatChanges) {
+  EXPECT_EQ(words(quantity("change.supply_pressure_Pa.value", 7.721e6, 2.2e5)), "77.2 +- 2.2 bar");
+  EXPECT_EQ(words(quantity("change.mass_kg@monday.csv.value", 61.5, 0.9)), "61.5 +- 0.9 kg");
+  EXPECT_EQ(words(quantity("change.valve_damping_ratio.value", 0.6, 0.01)), "60.0 +- 1.0 %");
+  EXPECT_EQ(words(quantity("change.mass_kg.time_constant_s", 0.3, 0.2)), "300 +- 200 ms");
+}
+
 TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
   EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
   EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
