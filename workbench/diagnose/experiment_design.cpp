@@ -117,7 +117,7 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
   const selection::Diagnosis& found = result.diagnosis;
   if (found.verdict == selection::Verdict::not_excited) {
     result.advice = advice_to_excite(problem);
-  } else if (found.verdict == selection::Verdict::unexplained) {
+  } else if (found.verdict == selection::Verdict::unexplained && !found.search.interrupted) {
     result.advice = advice_for_unexplained(found.where, problem.model.plant);
   } else if (found.verdict == selection::Verdict::changing) {
     result.advice = words_for_changes(found.changing);
