@@ -252,7 +252,6 @@ std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
       names.push_back(record.name);
   }
   if (names.size() < 2 || stage.model.fitted.jacobian.size() == 0) return {};
-  if (names.size() == 2) names.erase(names.begin());
   const Columns columns = columns_of(stage);
   const auto own = static_cast<Index>(stage.model.fitted.parameters.size());
   const MatrixXd basis = basis_of(columns.values.leftCols(own));

@@ -23,9 +23,7 @@ constexpr double kMostRatio = 3.0;
 
 /// Three significant digits: a literal in a formula.
 double rounded(double value) {
-  if (!(std::abs(value) > 0.0) || !std::isfinite(value)) return value;
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
-  return unit * std::round(value / unit);
+  return std::isfinite(value) ? std::stod(fmt::format("{:.2e}", value)) : value;
 }
 
 enum class Sign { positive, both };

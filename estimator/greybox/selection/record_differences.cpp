@@ -18,7 +18,7 @@ constexpr std::size_t kMostDifferences = 3;
 /// Share of what effects have explained that may be owed to their being inexact.
 constexpr double kInexactRecords = 0.005;
 /// Differences of a round that are fitted.
-constexpr std::size_t kFittedDifferences = 4;
+constexpr std::size_t kFittedDifferences = 6;
 /// Range of a plant parameter about its value in the other records, in logarithms.
 constexpr double kDifferenceRange = 2.3;
 
@@ -58,6 +58,33 @@ ModelStage with_difference(const ModelStage& stage, const ChangeScore& score) {
   return next;
 }
 
+/// Of two records either may be said to differ: the one that leaves the other nearer to the file.
+/// `best`: the likeliest.
+std::size_t nearest_to_file(const SearchContext& context, const std::vector<ChangeScore>& scores,
+                            const std::vector<InnovationStage>& stages, std::size_t best) {
+  const std::string& name = scores[best].parameter.name;
+  const std::vector<FreeParameter>& plant = context.problem.plant_parameters;
+  const auto known = std::find_if(plant.begin(), plant.end(),
+                                  [&](const FreeParameter& p) { return p.name == name; });
+  if (known == plant.end()) return best;
+  const double file = start_of(context.problem.model, plant)[known - plant.begin()];
+  const auto distance = [&](std::size_t i) {
+    const FitSummary& fitted = stages[i].model.fitted;
+    for (std::size_t k = 0; k < fitted.parameters.size(); ++k) {
+      if (fitted.parameters[k].name == name)
+        return std::abs(fitted.theta[static_cast<Eigen::Index>(k)] - file);
+    }
+    return std::numeric_limits<double>::infinity();
+  };
+  std::size_t nearest = best;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const bool same = scores[i].parameter.name == name &&
+                      penalised(stages[i]) < penalised(stages[best]) + 2.0 * kRivals_nats;
+    if (same && distance(i) < distance(nearest)) nearest = i;
+  }
+  return nearest;
+}
+
 /// The stage with the likeliest difference; false where none is worth it.
 bool add_difference(Differences& found) {
   const SearchContext& context = found.context;
@@ -73,11 +100,13 @@ bool add_difference(Differences& found) {
                                    SimulationWidth{}, InnovationFit::trial);
     stages[i] = settled(context, std::move(model), found.stage.noise, 1, SimulationWidth{});
   });
-  const auto best =
+  const auto likeliest =
       std::min_element(stages.begin(), stages.end(),
                        [](const auto& a, const auto& b) { return penalised(a) < penalised(b); });
-  if (best == stages.end() || context.cancelled()) return false;
-  const auto chosen = static_cast<std::size_t>(best - stages.begin());
+  if (likeliest == stages.end() || context.cancelled()) return false;
+  const std::size_t chosen = nearest_to_file(context, scores, stages,
+                                             static_cast<std::size_t>(likeliest - stages.begin()));
+  const InnovationStage* const best = &stages[chosen];
   InnovationStage next =
       settled(context, best->model, best->noise, kMostTurns, wide(context.options.threads));
   if (!(next.minus_two_log < best->minus_two_log)) next = *best;

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "estimator/greybox/fit.h"
 #include "estimator/parallel.h"
@@ -16,14 +18,26 @@ constexpr int kHalfIterations = 10;
 /// Distance over its error that chance reaches once in twenty.
 constexpr double kClearlyApart = 2.0;
 
-/// The weights of the first or the last samples that count, half of all.
-VectorXd half_of(const VectorXd& weights, bool first) {
-  const double half = 0.5 * weights.sum();
+/// The weights of the first or the last samples that count, half of each record's: a parameter may
+/// have a value of its own in one of them.
+VectorXd half_of(const FitDataset& data, const VectorXd& weights, bool first) {
+  const auto weights_of = [&](std::size_t r) {
+    return weights.segment(static_cast<Index>(data.starts[r]),
+                           static_cast<Index>(data.records[r].size()));
+  };
+  std::map<std::string, double> half;
+  for (std::size_t r = 0; r < data.records.size(); ++r)
+    half[data.records[r].name] += 0.5 * weights_of(r).sum();
+  std::map<std::string, double> sum;
   VectorXd result = VectorXd::Zero(weights.size());
-  double sum = 0.0;
-  for (Index k = 0; k < weights.size(); ++k) {
-    sum += weights[k];
-    if ((sum <= half) == first) result[k] = weights[k];
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const std::string& name = data.records[r].name;
+    const VectorXd own = weights_of(r);
+    for (Index k = 0; k < own.size(); ++k) {
+      sum[name] += own[k];
+      if ((sum[name] <= half[name]) == first)
+        result[static_cast<Index>(data.starts[r]) + k] = own[k];
+    }
   }
   return result;
 }
@@ -40,7 +54,7 @@ VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
   std::array<FitSummary, 2> halves;
   std::array<VectorXd, 2> errors;
   in_parallel(halves.size(), context.options.threads, [&](std::size_t i) {
-    const VectorXd half = half_of(weights, i == 0);
+    const VectorXd half = half_of(problem.data, weights, i == 0);
     halves[i] = fit(problem.model, problem.data, half, fitted.parameters, fitted.theta, options);
     errors[i] = std_errors(problem.data, half, halves[i]);
   });

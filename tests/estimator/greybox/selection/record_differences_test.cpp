@@ -60,6 +60,25 @@ TEST(RecordDifferences, AnOffsetOfOneRecordAloneIsNamed) {
   EXPECT_NEAR(d.changing.front().to - d.changing.front().from, 0.05, 0.002);
 }
 
+TEST(RecordDifferences, OfTwoRecordsTheOneThatIsFartherFromTheFileDiffers) {
+  const Diagnosis d = diagnosed({{1.03}, {}});
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "gain_mps_per_V");
+  EXPECT_EQ(d.changing.front().record, "a");
+  EXPECT_NEAR(d.changing.front().from, kServoGain, 4.0 * d.changing.front().from_error);
+  EXPECT_NEAR(d.changing.front().to, 1.03 * kServoGain, 4.0 * d.changing.front().to_error);
+  EXPECT_LT(d.changing.front().from_error, 1e-3 * kServoGain);
+}
+
+TEST(RecordDifferences, AnOffsetOfTheFirstRecordAloneIsNamed) {
+  const Diagnosis d = diagnosed({{1.0, 0.05}, {}});
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "null_bias.offset_V");
+  EXPECT_EQ(d.changing.front().record, "a");
+  EXPECT_EQ(d.changing.front().from, 0.0);
+  EXPECT_NEAR(d.changing.front().to, 0.05, 0.002);
+}
+
 TEST(RecordDifferences, RecordsOfOneServoDoNotDiffer) {
   const Diagnosis d = diagnosed({{}, {}});
   EXPECT_EQ(d.verdict, Verdict::nothing_missing);
