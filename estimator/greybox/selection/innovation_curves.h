@@ -26,5 +26,7 @@ inline constexpr double kCurve_nats = 30.0;
 
 /// Gain of the best curve; 0: there is none.
 [[nodiscard]] double largest_curve_nats(const InnovationStage& stage);
+/// True where that curve shows that physics is missing.
+[[nodiscard]] bool leaves_physics(const InnovationStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/parallel.h"
 
@@ -77,9 +78,10 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
 
 std::vector<InnovationStage> exchanges(const SearchContext& plain, const InnovationStage& final,
                                        const std::string& effect, const InnovationStage& without,
-                                       SimulatedEffectsMemo& simulated) {
-  std::vector<InnovationTrial> rivals = effect_trials(without);
-  add_simulated_starts(without, simulated.beside(plain, without.model), rivals);
+                                       TrialMemo& memo) {
+  std::vector<InnovationTrial> rivals = memo.effects_beside(without);
+  if (memo.simulated.knows(without.model) || leaves_physics(final))
+    add_simulated_starts(without, memo.simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);
   double best = -std::numeric_limits<double>::infinity();
   for (const InnovationTrial& rival : rivals) {
@@ -99,7 +101,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   const unsigned threads = plain.options.threads;
   const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
   in_parallel(rivals.size(), threads, [&](std::size_t i) {
-    found[i] = settled(plain, without, rivals[i]);
+    found[i] = memo.settled(plain, without, rivals[i]);
     const double behind_nats = 0.5 * (penalised(found[i]) - penalised(final));
     if (!(behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats)) return;
     InnovationStage polished = settled(plain, found[i].model, found[i].noise, kMostTurns, width);

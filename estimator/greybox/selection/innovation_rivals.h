@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/trial_memo.h"
 
 namespace estimator::greybox::selection {
 
@@ -33,7 +33,7 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
                                                      const InnovationStage& final,
                                                      const std::string& effect,
                                                      const InnovationStage& without,
-                                                     SimulatedEffectsMemo& simulated);
+                                                     TrialMemo& memo);
 
 /// The effect and those of its exchanges that explain the record about as well.
 [[nodiscard]] InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,

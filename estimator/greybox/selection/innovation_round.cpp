@@ -36,10 +36,6 @@ void drop_out_of_range(const SearchContext& plain, InnovationStage& stage,
   }
 }
 
-bool leaves_physics(const InnovationStage& stage) {
-  return largest_curve_nats(stage) > kCurve_nats;
-}
-
 std::vector<InnovationTrial> line_trials(const SearchContext& plain, const InnovationStage& stage) {
   std::vector<InnovationTrial> trials;
   std::vector<ScoredLine> lines = line_candidates(plain, stage);
@@ -57,8 +53,9 @@ std::vector<InnovationTrial> line_trials(const SearchContext& plain, const Innov
 /// The trials of a round and the stage that each leads to.
 class RoundTrials {
  public:
-  RoundTrials(const SearchContext& plain, const InnovationStage& stage, int number)
-      : plain_(plain), stage_(stage) {
+  RoundTrials(const SearchContext& plain, const InnovationStage& stage, TrialMemo& memo,
+              int number)
+      : plain_(plain), stage_(stage), memo_(memo) {
     progress_.round = number;
     progress_.by_innovations = true;
   }
@@ -143,7 +140,7 @@ class RoundTrials {
     InnovationCandidate& candidate = trials_[i].candidate;
     InnovationTrial unknown = trials_[i];
     if (candidate.settled) unknown.starts = {trials_[i].starts.back()};
-    InnovationStage reached = settled(plain_, stage_, unknown);
+    InnovationStage reached = memo_.settled(plain_, stage_, unknown);
     if (!(reached.minus_two_log < stages_[i].minus_two_log)) return;
     take(i, std::move(reached));
     candidate.settled = true;
@@ -190,6 +187,7 @@ class RoundTrials {
 
   const SearchContext& plain_;
   const InnovationStage& stage_;
+  TrialMemo& memo_;
   std::vector<InnovationTrial> trials_;
   std::vector<InnovationStage> stages_;
   std::vector<char> polished_;
@@ -226,12 +224,12 @@ std::string effect_out_of_range(const InnovationStage& stage) {
 }
 
 bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
-            SimulatedEffectsMemo& simulated, std::vector<InnovationRound>& rounds,
+            TrialMemo& memo, std::vector<InnovationRound>& rounds,
             std::set<std::string>& dropped) {
   const bool effects_too = options.candidates == Candidates::effects_and_lines;
   const bool may_grow = effects_too && stage.model.added.size() < options.most_effects;
   std::vector<InnovationTrial> first;
-  if (may_grow) first = effect_trials(stage);
+  if (may_grow) first = memo.effects_beside(stage);
   std::erase_if(first, [&](const InnovationTrial& trial) {
     return dropped.contains(trial.candidate.effect);
   });
@@ -239,13 +237,13 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptio
     std::vector<InnovationTrial> lines = line_trials(plain, stage);
     std::move(lines.begin(), lines.end(), std::back_inserter(first));
   }
-  RoundTrials trials(plain, stage, static_cast<int>(rounds.size()) + 1);
+  RoundTrials trials(plain, stage, memo, static_cast<int>(rounds.size()) + 1);
   trials.settle_finalists(std::move(first));
   std::size_t chosen = trials.choose(options.evidence_nats);
   // simulations cost as much as the rest of a round: they run where that leaves something
   const InnovationStage& reached = chosen == trials.none() ? stage : trials.stage(chosen);
-  if (may_grow && (simulated.knows(stage.model) || leaves_physics(reached))) {
-    SimulatedEffects beside = simulated.beside(plain, stage.model);
+  if (may_grow && (memo.simulated.knows(stage.model) || leaves_physics(reached))) {
+    SimulatedEffects beside = memo.simulated.beside(plain, stage.model);
     std::erase_if(beside.effects,
                   [&](const SimulatedEffect& one) { return dropped.contains(one.effect); });
     trials.settle_simulated(beside);

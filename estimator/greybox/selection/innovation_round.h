@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/trial_memo.h"
 
 namespace estimator::greybox::selection {
 
@@ -28,7 +28,7 @@ struct RoundOptions {
 /// effects that are no candidates any more, with those that the candidate drives out of their
 /// range.
 bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
-            SimulatedEffectsMemo& simulated, std::vector<InnovationRound>& rounds,
+            TrialMemo& memo, std::vector<InnovationRound>& rounds,
             std::set<std::string>& dropped);
 
 /// Moves each spectral line to the site where the model makes it likeliest: where it enters is

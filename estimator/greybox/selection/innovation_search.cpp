@@ -55,7 +55,8 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
 InnovationStage stage_without(const SearchContext& context, const InnovationSearch& search,
                               const InnovationStage& final, std::size_t i) {
   if (search.without.size() > i) return search.without[i];
-  if (final.model.added.size() + final.noise.lines.size() == 1) return search.before;
+  const bool only = final.model.added.size() == 1 && std::isfinite(search.bare.minus_two_log);
+  if (only && final.noise.lines.size() == search.bare.noise.lines.size()) return search.bare;
   return without(context, final, final.model.added[i]);
 }
 
@@ -65,12 +66,12 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
   const std::size_t effects = stage.model.added.size();
   if (effects + stage.noise.lines.size() < 2) return false;
   // so many that leave physics unexplained stand in for a law, whichever they are
-  if (effects >= kStandIn && largest_curve_nats(stage) > kCurve_nats) return false;
+  if (effects >= kStandIn && leaves_physics(stage)) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);
     std::vector<InnovationStage> others =
-        exchanges(context, stage, added[i], without, search.simulated);
+        exchanges(context, stage, added[i], without, search.memo);
     search.rivals[added[i]] = rivals_among(stage, added[i], others);
     std::erase_if(others, [](const auto& other) { return !effect_out_of_range(other).empty(); });
     const auto best =
@@ -168,7 +169,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
                                     const SearchBranch& held, std::size_t most_effects) {
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
-  search.simulated = SimulatedEffectsMemo(held.rounds);
+  search.memo = TrialMemo(held.rounds);
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
@@ -177,8 +178,9 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const auto extend_fully = [&] {
     bool more = true;
     while (more && !context.cancelled()) {
+      if (stage.model.added.empty()) search.bare = stage;
       const RoundOptions options{Candidates::effects_and_lines, most_effects, evidence_nats()};
-      more = extend(context, stage, options, search.simulated, search.rounds, dropped);
+      more = extend(context, stage, options, search.memo, search.rounds, dropped);
     }
   };
   extend_fully();
@@ -202,7 +204,7 @@ void add_lines(const SearchContext& context, InnovationSearch& search, Innovatio
   while (more && !context.cancelled()) {
     const RoundOptions options{Candidates::lines, 0,
                                kEvidence_nats + inexact_nats(context, search, stage)};
-    more = extend(context, stage, options, search.simulated, search.rounds, none);
+    more = extend(context, stage, options, search.memo, search.rounds, none);
   }
   search.inexact_nats = inexact_nats(context, search, stage);
 }
@@ -234,21 +236,21 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
 
 std::vector<InnovationStage> exchanges_of(const SearchContext& with_holdouts,
                                           const InnovationSearch& search, std::size_t i,
-                                          SimulatedEffectsMemo& simulated) {
+                                          TrialMemo& memo) {
   if (with_holdouts.problem.candidate_effects.empty()) return {};
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationStage without = stage_without(context, search, search.final, i);
   without.context.problem.model = context.problem.model;
   without.context.problem.candidate_effects = context.problem.candidate_effects;
   without.context.problem.trial_sizes = context.problem.trial_sizes;
-  return exchanges(context, search.final, search.final.model.added[i], without, simulated);
+  return exchanges(context, search.final, search.final.model.added[i], without, memo);
 }
 
 std::vector<InnovationRivals> find_rivals(const SearchContext& context,
                                           const InnovationSearch& search) {
   const std::vector<std::string>& added = search.final.model.added;
   std::vector<InnovationRivals> groups;
-  SimulatedEffectsMemo simulated = search.simulated;
+  TrialMemo memo = search.memo;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     const auto gain = search.gains_nats.find(added[i]);
     const auto count = static_cast<double>(search.final.model.fitted.residual_m.size());
@@ -260,7 +262,7 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& context,
     InnovationRivals group =
         known != search.rivals.end()
             ? known->second
-            : rivals_among(search.final, added[i], exchanges_of(context, search, i, simulated));
+            : rivals_among(search.final, added[i], exchanges_of(context, search, i, memo));
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

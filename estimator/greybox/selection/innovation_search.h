@@ -48,7 +48,8 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
-  SimulatedEffectsMemo simulated;  ///< kept from round to round
+  TrialMemo memo;  ///< kept from round to round
+  InnovationStage bare;  ///< the last stage without effects
 
   /// True when a load sets in, which no curve over the motion explains better and which stands out
   /// from the disturbance's own jumps.
@@ -85,7 +86,7 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search);
 [[nodiscard]] std::vector<InnovationStage> exchanges_of(const SearchContext& context,
                                                         const InnovationSearch& search,
                                                         std::size_t i,
-                                                        SimulatedEffectsMemo& simulated);
+                                                        TrialMemo& memo);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

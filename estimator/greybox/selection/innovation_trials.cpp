@@ -82,6 +82,11 @@ NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& sta
   return noise;
 }
 
+double squares_and_priors(const InnovationStage& stage) {
+  const double floor_m = stage.context.problem.data.noise_floor_m;
+  return squares(stage.model.fitted, floor_m) + prior_cost(stage.model.fitted);
+}
+
 }  // namespace
 
 NoiseModel moved(NoiseModel noise, std::size_t line, disturbance::LineSite site) {
@@ -102,15 +107,22 @@ double penalised(const InnovationStage& stage) {
          2.0 * kPerParameter_nats * static_cast<double>(stage.model.fitted.parameters.size());
 }
 
+std::vector<ScreeningResult> screened_effects(const InnovationStage& stage) {
+  return screen(stage.context, stage.model, absent_from(stage.context, stage.model));
+}
+
+double expected_nats(const InnovationStage& stage, const ScreeningResult& screened) {
+  const double ratio = screened.expected_ratio;
+  return 0.5 * (1.0 - ratio * ratio) * squares_and_priors(stage);
+}
+
 std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   const SearchContext& context = stage.context;
   const double floor_m = context.problem.data.noise_floor_m;
-  std::vector<ScreeningResult> screened =
-      screen(context, stage.model, absent_from(context, stage.model));
-  const double before = squares(stage.model.fitted, floor_m) + prior_cost(stage.model.fitted);
+  std::vector<ScreeningResult> screened = screened_effects(stage);
+  const double before = squares_and_priors(stage);
   std::erase_if(screened, [&](const ScreeningResult& result) {
-    const double ratio = result.expected_ratio;
-    return 0.5 * before * (1.0 - ratio * ratio) < kHopeless_nats;
+    return expected_nats(stage, result) < kHopeless_nats;
   });
   screened.resize(std::min(screened.size(), kFitted));
   std::vector<InnovationTrial> trials(screened.size());
@@ -165,15 +177,14 @@ SimulatedEffects simulated_effects(const Round& round) {
   return result;
 }
 
-/// An effect may have more or fewer refinements, so that its name does not tell the model.
+}  // namespace
+
 std::vector<std::string> parameters_of(const ModelStage& model) {
   std::vector<std::string> names;
   for (const FreeParameter& p : model.fitted.parameters) names.push_back(p.name);
   std::sort(names.begin(), names.end());
   return names;
 }
-
-}  // namespace
 
 SimulatedEffectsMemo::SimulatedEffectsMemo(const std::vector<Round>& known) {
   for (const Round& round : known)

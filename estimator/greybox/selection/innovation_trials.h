@@ -40,6 +40,11 @@ struct InnovationTrial {
 /// -2 log L with a penalty for each parameter.
 [[nodiscard]] double penalised(const InnovationStage& stage);
 
+/// The effects by what they promise with the stage's gains, the most promising first.
+[[nodiscard]] std::vector<ScreeningResult> screened_effects(const InnovationStage& stage);
+/// Gain that a screened effect promises beside the stage.
+[[nodiscard]] double expected_nats(const InnovationStage& stage, const ScreeningResult& screened);
+
 /// The most promising effects, fitted with the stage's gains.
 [[nodiscard]] std::vector<InnovationTrial> effect_trials(const InnovationStage& stage);
 
@@ -52,6 +57,9 @@ struct SimulatedEffects {
   double training_rms_without_m = 0.0;
   std::vector<SimulatedEffect> effects;
 };
+
+/// The names of the model's parameters, sorted: that of an effect does not tell its refinements.
+[[nodiscard]] std::vector<std::string> parameters_of(const ModelStage& model);
 
 /// The effects that simulations show beside a model's, found once for each set of effects.
 class SimulatedEffectsMemo {

@@ -36,15 +36,29 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site, 
   return dictionary;
 }
 
+/// False where no law is better by kRivals_nats in the place of the effects found, as none promises
+/// half as much beside them, which is never less likely.
+bool law_promises(const SearchContext& search, const InnovationStage& found) {
+  InnovationStage stage = found;
+  stage.context.problem.model = search.problem.model;
+  stage.context.problem.candidate_effects = search.problem.candidate_effects;
+  stage.context.problem.trial_sizes = search.problem.trial_sizes;
+  const std::vector<ScreeningResult> screened = screened_effects(stage);
+  return std::any_of(screened.begin(), screened.end(), [&](const ScreeningResult& law) {
+    return expected_nats(stage, law) > 0.5 * kRivals_nats;
+  });
+}
+
 }  // namespace
 
 bool law_competes(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {
   const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);
   if (dictionary.empty() || context.cancelled()) return false;
-  SimulatedEffectsMemo simulated;
-  const std::vector<InnovationStage> others =
-      exchanges_of(with_laws(context, dictionary, {}), named, 0, simulated);
+  const SearchContext search = with_laws(context, dictionary, named.final.model.added);
+  if (!law_promises(search, named.final)) return false;
+  TrialMemo memo;
+  const std::vector<InnovationStage> others = exchanges_of(search, named, 0, memo);
   return std::any_of(others.begin(), others.end(), [&](const InnovationStage& other) {
     return penalised(other) < penalised(named.final) + 2.0 * kRivals_nats;
   });

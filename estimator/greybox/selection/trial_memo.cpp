@@ -1,0 +1,56 @@
+#include "estimator/greybox/selection/trial_memo.h"
+
+#include <cmath>
+#include <utility>
+
+namespace estimator::greybox::selection {
+
+TrialMemo::StageKey TrialMemo::key_of(const InnovationStage& stage) {
+  return {stage.minus_two_log, parameters_of(stage.model)};
+}
+
+std::vector<InnovationTrial> TrialMemo::effects_beside(const InnovationStage& stage) {
+  if (!stage.model.added.empty()) return effect_trials(stage);
+  const StageKey key = key_of(stage);
+  {
+    const std::lock_guard lock(kept_->mutex);
+    const auto known = kept_->trials.find(key);
+    if (known != kept_->trials.end()) return known->second;
+  }
+  std::vector<InnovationTrial> trials = effect_trials(stage);
+  if (!stage.context.cancelled()) {
+    const std::lock_guard lock(kept_->mutex);
+    kept_->trials.emplace(key, trials);
+  }
+  return trials;
+}
+
+InnovationStage TrialMemo::settled(const SearchContext& plain, const InnovationStage& stage,
+                                   const InnovationTrial& trial) {
+  const std::string& effect = trial.candidate.effect;
+  if (!stage.model.added.empty() || effect.empty()) return selection::settled(plain, stage, trial);
+  InnovationStage best;
+  for (const ModelStage& start : trial.starts) {
+    const Eigen::VectorXd& theta = start.fitted.theta;
+    const StartKey key{key_of(stage), effect, {theta.begin(), theta.end()}};
+    InnovationStage one;
+    {
+      const std::lock_guard lock(kept_->mutex);
+      const auto known = kept_->stages.find(key);
+      if (known != kept_->stages.end()) one = known->second;
+    }
+    if (!std::isfinite(one.minus_two_log)) {
+      InnovationTrial single = trial;
+      single.starts = {start};
+      one = selection::settled(plain, stage, single);
+      if (std::isfinite(one.minus_two_log) && !plain.cancelled()) {
+        const std::lock_guard lock(kept_->mutex);
+        kept_->stages.emplace(key, one);
+      }
+    }
+    if (one.minus_two_log < best.minus_two_log) best = std::move(one);
+  }
+  return best;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,52 @@
+// What an innovation search has fitted, kept for who asks again: the exchanges of the only effect
+// found begin where the round began that found it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimator/greybox/selection/innovation_trials.h"
+
+namespace estimator::greybox::selection {
+
+/// Of one search and its candidates. Copies share what they keep; calls from several threads are
+/// safe but for `simulated`.
+class TrialMemo {
+ public:
+  TrialMemo() = default;
+  /// `known`: rounds of a search by simulations with the same candidates.
+  explicit TrialMemo(const std::vector<Round>& known) : simulated(known) {}
+
+  SimulatedEffectsMemo simulated;
+
+  /// effect_trials(), kept for stages without effects.
+  [[nodiscard]] std::vector<InnovationTrial> effects_beside(const InnovationStage& stage);
+  /// settled(), kept for effects beside a stage without effects.
+  [[nodiscard]] InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
+                                        const InnovationTrial& trial);
+
+ private:
+  /// A stage by its likelihood and its parameters.
+  using StageKey = std::pair<double, std::vector<std::string>>;
+  /// A start by its stage, its effect and its parameters' values.
+  struct StartKey {
+    StageKey stage;
+    std::string effect;
+    std::vector<double> theta;
+    auto operator<=>(const StartKey&) const = default;
+  };
+  struct Kept {
+    std::mutex mutex;
+    std::map<StageKey, std::vector<InnovationTrial>> trials;
+    std::map<StartKey, InnovationStage> stages;
+  };
+  [[nodiscard]] static StageKey key_of(const InnovationStage& stage);
+
+  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>();
+};
+
+}  // namespace estimator::greybox::selection
