@@ -31,7 +31,7 @@ struct OutOfRange {
 
 double value_of(const Kind& kind, const Answers& all, const std::string& parameter) {
   ModelWriter w("");
-  write_model(kind, all, w);
+  kind.write(all, w);
   for (const auto& [name, value] : w.values()) {
     if (name == parameter) return value;
   }
@@ -41,7 +41,7 @@ double value_of(const Kind& kind, const Answers& all, const std::string& paramet
 /// The first parameter of the model that its plant does not allow.
 std::optional<OutOfRange> out_of_range(const Kind& kind, const Answers& all) {
   ModelWriter w("");
-  write_model(kind, all, w);
+  kind.write(all, w);
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(w.plant());
   for (const auto& [name, value] : w.values()) {
     for (const plant_sim::ParameterInfo& info : plant.parameters) {

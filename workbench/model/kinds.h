@@ -12,17 +12,20 @@ namespace workbench::model {
 
 using questions::Question;
 
+class ModelWriter;
+using Answers = std::map<std::string, double>;  ///< by flag
+
 struct Kind {
   std::string name;
   std::string what;
   std::vector<Question> questions;
+  /// Writes the model without its head. Requires an answer to each question, within its range.
+  void (*write)(const Answers& all, ModelWriter& w) = nullptr;
 };
 
 [[nodiscard]] const std::vector<Kind>& kinds();
 /// Throws config::schema::UsageError with the near name.
 [[nodiscard]] const Kind& find_kind(const std::string& name);
-
-using Answers = std::map<std::string, double>;  ///< by flag
 
 /// The answers, with the usual value of each that is left open.
 [[nodiscard]] Answers with_usual(const Kind& kind, const Answers& answers);
@@ -35,9 +38,5 @@ void check_answers(const Kind& kind, const Answers& answers);
 /// they leave open has its usual value.
 [[nodiscard]] std::string model_text(const Kind& kind, const Answers& answers,
                                      const std::string& name, const std::string& command);
-
-class ModelWriter;
-/// The model without its head. Requires an answer to each question, within its range.
-void write_model(const Kind& kind, const Answers& all, ModelWriter& w);
 
 }  // namespace workbench::model
