@@ -28,6 +28,7 @@ constexpr std::array kUnits{
     KnownUnit{"us|µs|usec|microseconds", "s", 1e-6},
     KnownUnit{"ns", "s", 1e-9},
     KnownUnit{"min|minutes", "s", 60.0},
+    KnownUnit{"h|hr|hour|hours|Stunde|Stunden", "s", 3600.0},
     KnownUnit{"V|Volt|Volts", "V", 1.0},
     KnownUnit{"mV", "V", 1e-3},
     KnownUnit{"A|Amp|Amps|Ampere", "A", 1.0},
@@ -117,9 +118,9 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-/// Endings that are words as well: "pressure in", "y_min".
+/// Endings that are words as well: "pressure in", "y_min", "y_h".
 bool is_word_too(std::string_view unit, std::string_view name) {
-  if (unit == "min") return true;
+  if (unit == "min" || unit == "h") return true;
   if (unit != "in") return false;
   const std::string stem = folded(name);
   for (const std::string_view length : {"y", "x", "pos", "position", "stroke", "displacement"}) {
