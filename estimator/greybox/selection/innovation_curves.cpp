@@ -80,6 +80,8 @@ double largest_curve_nats(const InnovationStage& stage) {
   return curves.empty() ? 0.0 : curves.front().gain_nats;
 }
 
-bool leaves_physics(const InnovationStage& stage) { return largest_curve_nats(stage) > kCurve_nats; }
+bool leaves_physics(const InnovationStage& stage) {
+  return largest_curve_nats(stage) > kCurve_nats;
+}
 
 }  // namespace estimator::greybox::selection

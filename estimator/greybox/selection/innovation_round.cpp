@@ -53,8 +53,7 @@ std::vector<InnovationTrial> line_trials(const SearchContext& plain, const Innov
 /// The trials of a round and the stage that each leads to.
 class RoundTrials {
  public:
-  RoundTrials(const SearchContext& plain, const InnovationStage& stage, TrialMemo& memo,
-              int number)
+  RoundTrials(const SearchContext& plain, const InnovationStage& stage, TrialMemo& memo, int number)
       : plain_(plain), stage_(stage), memo_(memo) {
     progress_.round = number;
     progress_.by_innovations = true;
@@ -224,8 +223,7 @@ std::string effect_out_of_range(const InnovationStage& stage) {
 }
 
 bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
-            TrialMemo& memo, std::vector<InnovationRound>& rounds,
-            std::set<std::string>& dropped) {
+            TrialMemo& memo, std::vector<InnovationRound>& rounds, std::set<std::string>& dropped) {
   const bool effects_too = options.candidates == Candidates::effects_and_lines;
   const bool may_grow = effects_too && stage.model.added.size() < options.most_effects;
   std::vector<InnovationTrial> first;

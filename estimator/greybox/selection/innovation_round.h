@@ -28,8 +28,7 @@ struct RoundOptions {
 /// effects that are no candidates any more, with those that the candidate drives out of their
 /// range.
 bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
-            TrialMemo& memo, std::vector<InnovationRound>& rounds,
-            std::set<std::string>& dropped);
+            TrialMemo& memo, std::vector<InnovationRound>& rounds, std::set<std::string>& dropped);
 
 /// Moves each spectral line to the site where the model makes it likeliest: where it enters is
 /// decided before the effects are known that pass it on.

@@ -48,7 +48,7 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
-  TrialMemo memo;  ///< kept from round to round
+  TrialMemo memo;        ///< kept from round to round
   InnovationStage bare;  ///< the last stage without effects
 
   /// True when a load sets in, which no curve over the motion explains better and which stands out
@@ -85,8 +85,7 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search);
 /// exchanges() of the i-th effect of the final model with the candidates of `context`.
 [[nodiscard]] std::vector<InnovationStage> exchanges_of(const SearchContext& context,
                                                         const InnovationSearch& search,
-                                                        std::size_t i,
-                                                        TrialMemo& memo);
+                                                        std::size_t i, TrialMemo& memo);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

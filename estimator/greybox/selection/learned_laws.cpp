@@ -60,6 +60,12 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   return true;
 }
 
+/// The site of the laws that may stand where an effect does: what a valve lets through changes with
+/// its opening, its overlap and its supply alike.
+std::string site_of_laws(const std::string& site) {
+  return site == "flow" || site == "supply" || site == "lap" ? "opening" : site;
+}
+
 /// The only site at which all of the effects act; empty: there is none.
 std::string shared_site(const std::vector<std::string>& effects) {
   std::string site;
@@ -76,14 +82,14 @@ std::string shared_site(const std::vector<std::string>& effects) {
 
 namespace {
 
-/// Takes the laws of a search where they leave clearly less than `result`.
+/// Takes the laws of a search where they leave clearly less than `result`, which leaves physics
+/// unexplained; or as much where the rest is a disturbance, of which no model leaves less.
 bool take_better(const SearchContext& context, const ModelStage& first,
                  const std::optional<LawSearch>& found, Diagnosis& result) {
   Diagnosis learned;
-  if (!found || !take_laws(context, first, *found, result, learned) ||
-      !(learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m)) {
-    return false;
-  }
+  if (!found || !take_laws(context, first, *found, result, learned)) return false;
+  const double most = learned.disturbance ? 1.0 + kRivals : 1.0 - kRivals;
+  if (!(learned.rms_after_m < most * result.rms_after_m)) return false;
   result = std::move(learned);
   return true;
 }
@@ -109,7 +115,7 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const std::vector<std::string>& added = named.model.added;
   // several effects may stand in for one law, at any site
   const bool several = added.size() > 1;
-  const std::string site = several ? "" : shared_site(added);
+  const std::string site = several ? "" : site_of_laws(shared_site(added));
   if (!several && (site.empty() || innovations.physics_missing())) return false;
   // a search is worth it only where one law competes with the effect
   if (!several && !law_competes(context, site, innovations)) return false;

@@ -104,6 +104,36 @@ TEST(Laws, NoLawCompetesWithTheRightEffect) {
   EXPECT_FALSE(law_competes(quadratic.context, "sensor", quadratic.found));
 }
 
+// A valve whose gain falls as it opens draws less, as from a supply that droops.
+TEST(Laws, ALawOfTheOpeningCompetesWithAnEffectOfTheSupply) {
+  const FewEffects curved =
+      searched_with({"supply_droop"},
+                    "motion=fast_steps,length_s=30,left_out=gain_curvature,left_out.size=0.05,"
+                    "outside.force_N=20,outside.corner_Hz=3");
+  ASSERT_THAT(curved.found.final.model.added, ElementsAre("supply_droop"));
+  Diagnosis d;
+  d.noise_floor_m = curved.context.problem.data.noise_floor_m;
+  ASSERT_TRUE(prefer_law(curved.context, first_stage(curved.context), curved.found, d));
+  EXPECT_THAT(names_of(d.laws), ElementsAre("gain_curvature"));
+}
+
+// Beside a disturbance no model leaves less than that.
+TEST(Laws, ALawThatLeavesADisturbanceNeedNotLeaveLessThanWhatIsUnexplained) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=15,left_out=cubic_damping,outside.force_N=30", 31);
+  const ModelStage first = first_stage(context);
+  Diagnosis unexplained;
+  unexplained.noise_floor_m = context.problem.data.noise_floor_m;
+  unexplained.search.final = first;
+  unexplained.rms_after_m = 1.0;
+  Diagnosis learned = unexplained;
+  ASSERT_TRUE(learn_laws(context, first, learned));
+  ASSERT_TRUE(learned.disturbance);
+  unexplained.rms_after_m = 0.99 * learned.rms_after_m;
+  EXPECT_TRUE(learn_laws(context, first, unexplained));
+  EXPECT_THAT(names_of(unexplained.laws), ElementsAre("cubic_damping"));
+}
+
 // A force one way and a gain that differs by direction pass for it together.
 TEST(Laws, ALawIsLearnedInPlaceOfTwoEffectsElsewhere) {
   FewEffects two = searched_with(
