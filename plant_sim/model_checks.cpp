@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -105,7 +106,7 @@ std::string table_of(const formula::FormulaEffect& effect, const std::string& fi
   return file + (effect.curve ? ": [curve_effects." : ": [formula_effects.") + effect.name + "]";
 }
 
-formula::PlausibleRanges plausible(const ModelFile& model) {
+formula::PlausibleRanges plausible_ranges(const ModelFile& model) {
   constexpr double kFullCommand_V = 10.0;
   formula::PlausibleRanges ranges;
   const std::optional<Hydraulics> oil = hydraulics_of(model);
@@ -142,7 +143,7 @@ void check_declared(const ModelFile& model, const formula::FormulaEffect& effect
                                      "another name");
   }
   if (effect.curve) formula::check_points(effect, where);
-  check(effect, formula::compile(effect, plausible(model), where), where);
+  check(effect, formula::compile(effect, plausible_ranges(model), where), where);
 }
 
 void check_model(ModelFile& model, const std::string& file) {

@@ -13,7 +13,7 @@ namespace plant_sim {
 
 /// Plausible ranges of formula variables on this plant: commands of +-10 V, the whole stroke, twice
 /// the supply pressure.
-[[nodiscard]] formula::PlausibleRanges plausible(const ModelFile& model);
+[[nodiscard]] formula::PlausibleRanges plausible_ranges(const ModelFile& model);
 
 /// Throws config::schema::ConfigError for a declared effect whose name is taken or whose formula or
 /// points are not usable. `file` names the model in the message.

@@ -1,7 +1,5 @@
 #include "plant_sim/model_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -214,7 +212,7 @@ formula::Formulas ModelFile::formulas() const {
   std::vector<formula::Formula> all;
   all.reserve(formula_effects.size());
   for (const formula::FormulaEffect& effect : formula_effects) {
-    all.push_back(formula::compile(effect, plausible(*this), table_of(effect, name)));
+    all.push_back(formula::compile(effect, plausible_ranges(*this), table_of(effect, name)));
   }
   return formula::Formulas(std::move(all));
 }

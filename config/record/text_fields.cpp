@@ -123,7 +123,7 @@ bool parse_number(std::string_view field, char decimal, double& value, LoneGroup
   constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as word processors write it
   if (field.starts_with(kMinus)) {
     field.remove_prefix(kMinus.size());
-    return !field.starts_with('-') && parse_number("-" + std::string(field), decimal, value, lone);
+    return parse_number("-" + std::string(field), decimal, value, lone);
   }
   if (field.starts_with('+')) field.remove_prefix(1);
   if (field.empty() || !(is_digit(field.front()) || field.front() == '-' || field.front() == '.' ||

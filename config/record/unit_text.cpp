@@ -118,9 +118,14 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
+bool names_time(std::string_view name) {
+  const std::string stem = folded(name);
+  return stem == "t" || stem == "time" || stem == "zeit" || stem == "elapsed";
+}
+
 /// Endings that are words as well: "pressure in", "y_min", "y_h".
 bool is_word_too(std::string_view unit, std::string_view name) {
-  if (unit == "min" || unit == "h") return true;
+  if (unit == "min" || unit == "h") return !names_time(name);
   if (unit != "in") return false;
   const std::string stem = folded(name);
   for (const std::string_view length : {"y", "x", "pos", "position", "stroke", "displacement"}) {
@@ -194,7 +199,9 @@ HeaderText parse_header(std::string_view text) {
   for (std::size_t at = whole.find('/'); at != std::string_view::npos;
        at = whole.find('/', at + 1)) {
     HeaderText found = split(at, at + 1, true);
-    if (!found.name.empty()) return found;
+    // "Flow l/h", "Speed km/h" are rates
+    const bool rate = found.unit.si == "s" && !names_time(found.name);
+    if (!found.name.empty() && !rate) return found;
   }
   std::string_view stem = whole;
   while (stem.ends_with('_')) stem.remove_suffix(1);

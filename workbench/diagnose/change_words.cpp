@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/free_parameter.h"
 
 namespace workbench::diagnose {
 
@@ -13,7 +17,7 @@ std::string change_words(const selection::ParameterChange& change) {
   };
   if (change.kind == selection::ChangeKind::record) {
     return change.parameter + " is " + words(change.to, change.to_error) + " in " + change.record +
-           " and " + words(change.from, change.from_error) + " in the other records";
+           " and " + words(change.from, change.from_error) + " elsewhere";
   }
   std::string text = change.parameter + " goes from " + words(change.from, change.from_error) +
                      " to " + words(change.to, change.to_error);
@@ -28,6 +32,26 @@ std::string change_words(const selection::ParameterChange& change) {
       break;
   }
   return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);
+}
+
+std::string step_name(const std::string& added) {
+  constexpr std::string_view kChange = "change.";
+  std::string name;
+  for (std::string_view rest = added; !rest.empty();) {
+    constexpr std::string_view kAnd = " + ";
+    const std::size_t end = std::min(rest.find(kAnd), rest.size());
+    const std::string_view one = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + kAnd.size(), rest.size()));
+    if (!name.empty()) name += kAnd;
+    if (!one.starts_with(kChange)) {
+      name += one;
+      continue;
+    }
+    const std::size_t at = one.find(estimator::greybox::kInRecord);
+    name += one.substr(kChange.size(), std::min(at, one.size()) - kChange.size());
+    name += at < one.size() ? " of " + std::string(one.substr(at + 1)) : " that changes";
+  }
+  return name;
 }
 
 namespace {

@@ -343,8 +343,8 @@ std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
   if (diagnosis.steps.empty()) return steps;
   steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
   for (const selection::SelectionStep& step : diagnosis.steps) {
-    steps.push_back(
-        {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.validation_rms_m});
+    steps.push_back({step.added.empty() ? "its parameters fitted" : "+ " + step_name(step.added),
+                     step.validation_rms_m});
   }
   // Refinements of what was added may come and go in the end.
   constexpr double kSame = 1e-3;

@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "workbench/model/kind_parts.h"
 #include "workbench/model/kind_tables.h"
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "workbench/model/kind_parts.h"
 #include "workbench/model/kind_tables.h"

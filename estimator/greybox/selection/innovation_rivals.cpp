@@ -80,7 +80,9 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
                                        const std::string& effect, const InnovationStage& without,
                                        TrialMemo& memo) {
   std::vector<InnovationTrial> rivals = memo.effects_beside(without);
-  if (memo.simulated.knows(without.model) || leaves_physics(final))
+  // of a search that has asked for no simulations, none is worth its time once it explains the
+  // record
+  if (!memo.simulated.empty() || leaves_physics(final))
     add_simulated_starts(without, memo.simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);
   double best = -std::numeric_limits<double>::infinity();

@@ -60,18 +60,13 @@ InnovationStage stage_without(const SearchContext& context, const InnovationSear
   return without(context, final, final.model.added[i]);
 }
 
-/// True for so many effects that leave physics unexplained: they stand in for a law, whichever they
-/// are.
-bool stands_in(const InnovationStage& stage) {
-  return stage.model.added.size() >= kStandIn && leaves_physics(stage);
-}
-
 /// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
 /// and other effects were not known may have stood for these and another effect together.
 bool exchange(const SearchContext& context, InnovationSearch& search, InnovationStage& stage) {
   const std::size_t effects = stage.model.added.size();
   if (effects + stage.noise.lines.size() < 2) return false;
-  if (stands_in(stage)) return false;
+  // so many that leave physics unexplained stand in for a law, whichever they are
+  if (effects >= kStandIn && leaves_physics(stage)) return false;
   const std::vector<std::string> added = stage.model.added;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);
@@ -183,8 +178,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     bool more = true;
     while (more && !context.cancelled()) {
       if (stage.model.added.empty()) search.bare = stage;
-      const std::size_t most = stands_in(stage) ? stage.model.added.size() : most_effects;
-      const RoundOptions options{Candidates::effects_and_lines, most, evidence_nats()};
+      const RoundOptions options{Candidates::effects_and_lines, most_effects, evidence_nats()};
       more = extend(context, stage, options, search.memo, search.rounds, dropped);
     }
   };

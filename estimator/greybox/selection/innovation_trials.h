@@ -69,6 +69,7 @@ class SimulatedEffectsMemo {
   explicit SimulatedEffectsMemo(const std::vector<Round>& known);
   const SimulatedEffects& beside(const SearchContext& plain, const ModelStage& model);
   [[nodiscard]] bool knows(const ModelStage& model) const;
+  [[nodiscard]] bool empty() const { return known_.empty(); }
 
  private:
   std::map<std::vector<std::string>, SimulatedEffects> known_;

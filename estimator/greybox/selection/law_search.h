@@ -18,8 +18,9 @@ struct LawSearch {
   std::vector<Law> laws;  ///< those among the final model's effects, in the order added
 };
 
-/// True where a law of the site explains the record about as well as the effect in whose place it
-/// is, or better. `named` has found one effect.
+/// True where a law of the site may be clearly better than the effect in whose place it is: it
+/// explains the record about as well, or better, and promises something beside the effect. `named`
+/// has found one effect.
 [[nodiscard]] bool law_competes(const SearchContext& context, const std::string& site,
                                 const InnovationSearch& named);
 

@@ -78,17 +78,18 @@ std::string shared_site(const std::vector<std::string>& effects) {
   return site;
 }
 
-}  // namespace
-
-namespace {
-
 /// Takes the laws of a search where they leave clearly less than `result`, which leaves physics
-/// unexplained; or as much where the rest is a disturbance, of which no model leaves less.
+/// unexplained; formulas hardly more, where a disturbance is all that they leave: no model
+/// leaves less than that.
 bool take_better(const SearchContext& context, const ModelStage& first,
                  const std::optional<LawSearch>& found, Diagnosis& result) {
   Diagnosis learned;
   if (!found || !take_laws(context, first, *found, result, learned)) return false;
-  const double most = learned.disturbance ? 1.0 + kRivals : 1.0 - kRivals;
+  const bool formulas = std::none_of(learned.laws.begin(), learned.laws.end(),
+                                     [](const Law& law) { return law.effect.curve.has_value(); });
+  const bool at_floor =
+      learned.disturbance && learned.disturbed_floor_m() > (1.0 - kRivals) * learned.rms_after_m;
+  const double most = formulas && at_floor ? 1.0 + kRivals : 1.0 - kRivals;
   if (!(learned.rms_after_m < most * result.rms_after_m)) return false;
   result = std::move(learned);
   return true;

@@ -23,25 +23,21 @@ class TrialMemo {
 
   SimulatedEffectsMemo simulated;
 
-  /// effect_trials(), kept for stages without effects.
+  /// effect_trials(), kept for the last stage without effects.
   [[nodiscard]] std::vector<InnovationTrial> effects_beside(const InnovationStage& stage);
-  /// settled(), kept for effects beside a stage without effects.
+  /// settled(), kept for effects beside that stage.
   [[nodiscard]] InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
                                         const InnovationTrial& trial);
 
  private:
   /// A stage by its likelihood and its parameters.
   using StageKey = std::pair<double, std::vector<std::string>>;
-  /// A start by its stage, its effect and its parameters' values.
-  struct StartKey {
-    StageKey stage;
-    std::string effect;
-    std::vector<double> theta;
-    auto operator<=>(const StartKey&) const = default;
-  };
+  /// A start by its effect and its parameters' values.
+  using StartKey = std::pair<std::string, std::vector<double>>;
   struct Kept {
     std::mutex mutex;
-    std::map<StageKey, std::vector<InnovationTrial>> trials;
+    StageKey stage;
+    std::vector<InnovationTrial> trials;
     std::map<StartKey, InnovationStage> stages;
   };
   [[nodiscard]] static StageKey key_of(const InnovationStage& stage);
