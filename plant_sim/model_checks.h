@@ -1,4 +1,4 @@
-// What a model file may not contain beyond what the ranges of its numbers exclude.
+// Checks of a model file beyond the ranges of its numbers.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@ namespace {
 
 using questions::kMust;
 
-/// Those that both kinds of cylinders ask.
+/// Questions of both kinds of cylinders.
 std::vector<Question> cylinder_questions() {
   return {
       {"bore-mm", "piston diameter", "cylinder's type code, first number", 4.0, 1000.0, kMust},

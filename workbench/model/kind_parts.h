@@ -1,4 +1,4 @@
-// What several kinds of rigs ask for, and what follows from it.
+// Questions that several kinds of rigs share, and the numbers that follow from their answers.
 #pragma once
 
 #include <numbers>

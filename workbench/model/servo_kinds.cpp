@@ -39,7 +39,7 @@ void rotary_servo(const Answers& a, ModelWriter& w) {
   servo(a.at("full-speed-rpm") * 2.0 * kPi / 60.0, true, a, w);
 }
 
-/// What is asked beside the speed at full command.
+/// Questions of both servos; they differ in that about the speed at full command.
 std::vector<Question> servo_questions(const Question& full_speed) {
   const Question lag{"lag-ms",
                      "time constant of the speed behind the command",

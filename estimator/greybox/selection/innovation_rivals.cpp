@@ -80,8 +80,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
                                        const std::string& effect, const InnovationStage& without,
                                        TrialMemo& memo) {
   std::vector<InnovationTrial> rivals = memo.effects_beside(without);
-  // of a search that has asked for no simulations, none is worth its time once it explains the
-  // record
+  // simulations cost more than they find where the search has needed none so far
   if (!memo.simulated.empty() || leaves_physics(final))
     add_simulated_starts(without, memo.simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);

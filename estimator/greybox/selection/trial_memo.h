@@ -1,5 +1,5 @@
-// What an innovation search has fitted, kept for who asks again: the exchanges of the only effect
-// found begin where the round began that found it.
+// The memo of an innovation search keeps what was fitted beside its last stage without effects: the
+// exchanges of the only effect found begin where the round began that found it.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 namespace estimator::greybox::selection {
 
-/// Of one search and its candidates. Copies share what they keep; calls from several threads are
-/// safe but for `simulated`.
+/// A memo serves one search and its candidates. Copies share what they keep; calls from several
+/// threads are safe but for `simulated`.
 class TrialMemo {
  public:
   TrialMemo() = default;

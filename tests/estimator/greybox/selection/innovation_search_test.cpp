@@ -72,7 +72,7 @@ TEST(SimulatedEffectsMemo, KnowsAModelByItsParameters) {
   EXPECT_FALSE(memo.knows(model));
 }
 
-// What is asked for again is what was found, for each effect and start.
+// The memo's answers equal those of the search, for each effect and start.
 TEST(TrialMemo, GivesWhatTheSearchWouldFindAnew) {
   const SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=10,friction.coulomb_N=60,outside.force_N=10", 17);
