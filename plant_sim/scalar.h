@@ -20,6 +20,7 @@ inline double sqrt(double a) { return std::sqrt(a); }
 inline double exp(double a) { return elementary::exp(a); }
 inline double decay(double a) { return elementary::decay(a); }
 inline double log(double a) { return elementary::log(a); }
+inline double tanh(double a) { return elementary::tanh(a); }
 inline double sin(double a) {
   return std::fabs(a) <= elementary::kSinReach ? elementary::sin(a) : std::sin(a);
 }

@@ -1,6 +1,6 @@
 // Vector of eight doubles: eight parameter sets simulated on one input. Held in as many registers
 // as the instruction set needs (simd_register.h). Not a general SIMD library such as xsimd, because
-// each lane must give the bits of the scalar code, exp, log and sin included.
+// each lane must give the bits of the scalar code, exp, log, sin and tanh included.
 #pragma once
 
 #include <cmath>
@@ -163,6 +163,10 @@ SimdVector<W> decay(const SimdVector<W>& a) {
 template <std::size_t W>
 SimdVector<W> log(const SimdVector<W>& a) {
   return SimdVector<W>::each([&](std::size_t i) { return elementary::log(a.part(i)); });
+}
+template <std::size_t W>
+SimdVector<W> tanh(const SimdVector<W>& a) {
+  return SimdVector<W>::each([&](std::size_t i) { return elementary::tanh(a.part(i)); });
 }
 /// f applied to each lane.
 template <std::size_t W, class F>

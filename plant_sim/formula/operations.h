@@ -46,7 +46,9 @@ enum class Op : std::uint8_t {
   floor,
   atan2,
   min,
-  max
+  max,
+  multiply_add,  ///< a b + c, both rounded
+  limit          ///< max(min(a, b), c)
 };
 
 /// f of doubles, lane by lane.
@@ -137,7 +139,7 @@ S apply(Op op, const S& a, const S& b, const S& c) {
     case Op::cosh:
       return by_lane([](double x) { return std::cosh(x); }, a);
     case Op::tanh:
-      return by_lane([](double x) { return std::tanh(x); }, a);
+      return tanh(a);
     case Op::floor:
       return floor(a);
     case Op::atan2:
@@ -146,6 +148,10 @@ S apply(Op op, const S& a, const S& b, const S& c) {
       return min(a, b);
     case Op::max:
       return max(a, b);
+    case Op::multiply_add:
+      return a * b + c;
+    case Op::limit:
+      return max(min(a, b), c);
   }
   return zero;
 }

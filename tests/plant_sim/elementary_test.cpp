@@ -1,4 +1,4 @@
-// exp, log and sin of the physics against the C library in extended precision.
+// exp, log, sin and tanh of the physics against the C library in extended precision.
 #include "plant_sim/elementary.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +41,7 @@ double worst(F f, Exact exact, Draw draw) {
 const auto kExp = [](const auto& x) { return exp(x); };
 const auto kLog = [](const auto& x) { return log(x); };
 const auto kSin = [](const auto& x) { return sin(x); };
+const auto kTanh = [](const auto& x) { return tanh(x); };
 
 TEST(Exp, IsWithinOneAndAHalfUnitsInTheLastPlace) {
   std::mt19937_64 random(1);
@@ -114,6 +115,27 @@ TEST(Sin, IsTheLibrarysBeyondAndHasNoValueAtInfinity) {
   mixed.set(3, 1e12);
   EXPECT_EQ(sin(mixed)[3], std::sin(1e12));
   EXPECT_EQ(sin(mixed)[2], sin(1.0));
+}
+
+TEST(Tanh, IsWithinThreeUnitsInTheLastPlace) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> wide(-25.0, 25.0);
+  std::uniform_real_distribution<double> narrow(-1.0, 1.0);
+  std::uniform_real_distribution<double> exponent(-300.0, 0.0);
+  const auto exact = [](long double x) { return std::tanh(x); };
+  EXPECT_LT(worst(kTanh, exact, [&] { return wide(random); }), 3.0);
+  EXPECT_LT(worst(kTanh, exact, [&] { return narrow(random); }), 3.0);
+  EXPECT_LT(worst(kTanh, exact, [&] { return std::pow(10.0, exponent(random)); }), 3.0);
+}
+
+TEST(Tanh, EndsInOneAndIsOdd) {
+  EXPECT_EQ(tanh(0.0), 0.0);
+  EXPECT_EQ(tanh(kInfinity), 1.0);
+  EXPECT_EQ(tanh(-kInfinity), -1.0);
+  EXPECT_EQ(tanh(1e300), 1.0);
+  EXPECT_EQ(tanh(-0.3), -tanh(0.3));
+  EXPECT_TRUE(std::isnan(tanh(std::nan(""))));
+  EXPECT_TRUE(std::isnan(tanh(Simd(std::nan("")))[0]));
 }
 
 }  // namespace
