@@ -128,8 +128,9 @@ class VelocityServo {
     const S travel_m = (goal_mps + bent_mps) * S(step_s_) + lag_m;
     state.y_m = clamp(from_m + travel_m, S(-limits::kPosition_m), S(limits::kPosition_m));
     state.drive_mps = clamp(goal_mps + left_mps, S(-kDrive_mps), S(kDrive_mps));
-    effects.accept(state.y_m - from_m, speed_mps());
-    effects.end_step([&] { return motion(state.drive_mps, speed_mps()); }, step_s_);
+    const S v_mps = speed_mps();
+    effects.accept(state.y_m - from_m, v_mps);
+    effects.end_step([&] { return motion(state.drive_mps, v_mps); }, step_s_);
   }
 
   [[nodiscard]] S speed_mps() const { return opened(state.drive_mps); }

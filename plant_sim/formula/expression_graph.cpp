@@ -16,6 +16,8 @@ bool same_bits(double a, double b) {
 std::size_t operands(Op op) {
   switch (op) {
     case Op::choose:
+    case Op::multiply_add:
+    case Op::limit:
       return 3;
     case Op::negate:
       return 1;
@@ -88,11 +90,9 @@ ExpressionGraph::Handle ExpressionGraph::operation(Op op, Handle a, Handle b, Ha
   return handle(record(op, first, second, third));
 }
 
-ExpressionProgram ExpressionGraph::program(Handle result) {
-  const std::size_t end = node_of(result);
+std::vector<bool> ExpressionGraph::needed_for(std::size_t result) const {
   std::vector<bool> needed(nodes_.size());
-  std::vector<bool> moves(nodes_.size());
-  needed[end] = true;
+  needed[result] = true;
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     const Node& n = nodes_[i];
     if (!needed[i] || n.kind != Kind::operation) continue;
@@ -101,6 +101,11 @@ ExpressionProgram ExpressionGraph::program(Handle result) {
     if (count > 1) needed[n.b] = true;
     if (count > 2) needed[n.c] = true;
   }
+  return needed;
+}
+
+std::vector<bool> ExpressionGraph::moving() const {
+  std::vector<bool> moves(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& n = nodes_[i];
     const std::size_t count = operands(n.op);
@@ -108,6 +113,43 @@ ExpressionProgram ExpressionGraph::program(Handle result) {
                    ? moves[n.a] || (count > 1 && moves[n.b]) || (count > 2 && moves[n.c])
                    : i < ExpressionProgram::kVariables;
   }
+  return moves;
+}
+
+void ExpressionGraph::join_pairs(const std::vector<bool>& needed, const std::vector<bool>& moves) {
+  std::vector<std::size_t> uses(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Node& n = nodes_[i];
+    if (!needed[i] || n.kind != Kind::operation) continue;
+    const std::size_t count = operands(n.op);
+    ++uses[n.a];
+    if (count > 1) ++uses[n.b];
+    if (count > 2) ++uses[n.c];
+  }
+  const auto joins = [&](std::size_t node, Op op) {
+    return nodes_[node].kind == Kind::operation && nodes_[node].op == op && moves[node] &&
+           uses[node] == 1;
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& n = nodes_[i];
+    if (!needed[i] || n.kind != Kind::operation) continue;
+    const Node first = nodes_[n.a];
+    const Node second = nodes_[n.b];
+    if (n.op == Op::add && joins(n.b, Op::multiply)) {
+      n = {Kind::operation, 0.0, Op::multiply_add, second.a, second.b, n.a};
+    } else if (n.op == Op::add && joins(n.a, Op::multiply)) {
+      n = {Kind::operation, 0.0, Op::multiply_add, first.a, first.b, n.b};
+    } else if (n.op == Op::max && joins(n.a, Op::min)) {
+      n = {Kind::operation, 0.0, Op::limit, first.a, first.b, n.b};
+    }
+  }
+}
+
+ExpressionProgram ExpressionGraph::program(Handle result) {
+  const std::size_t end = node_of(result);
+  join_pairs(needed_for(end), moving());
+  const std::vector<bool> needed = needed_for(end);
+  const std::vector<bool> moves = moving();
 
   ExpressionProgram program;
   program.parameters = parameters_;

@@ -1,5 +1,6 @@
 // Expression graph of one formula during parsing: each operation is a node with its operands. Equal
-// operations share a node, constant operations are folded, small integer powers become products.
+// operations share a node, constant operations are folded, small integer powers become products,
+// and two operations of which the first has no other use become one (multiply_add, limit).
 #pragma once
 
 #include <cstddef>
@@ -43,6 +44,10 @@ class ExpressionGraph {
   std::size_t power(std::size_t base, std::size_t exponent);
   std::size_t product(std::size_t base, int exponent);
   std::size_t record(Op op, std::size_t a, std::size_t b, std::size_t c);
+  /// Joins operations on variables in pairs; results are the same.
+  void join_pairs(const std::vector<bool>& needed, const std::vector<bool>& moves);
+  [[nodiscard]] std::vector<bool> needed_for(std::size_t result) const;
+  [[nodiscard]] std::vector<bool> moving() const;  ///< depend on variables
   [[nodiscard]] bool fixed(std::size_t node) const { return nodes_[node].kind == Kind::constant; }
 
   std::size_t parameters_;

@@ -84,13 +84,27 @@ class ExpressionEvaluator {
   [[gnu::noinline]] void run(const ExpressionProgramView::Part& part, std::size_t into) const {
     S* const at = registers_.data();
     for (const ExpressionProgram::Instruction* i = part.first; i != part.last; ++i, ++into) {
-      // the most frequent operations without a call
-      if (i->op == Op::multiply) {
-        at[into] = at[i->a] * at[i->b];
-      } else if (i->op == Op::add) {
-        at[into] = at[i->a] + at[i->b];
-      } else {
-        at[into] = apply(i->op, at[i->a], at[i->b], at[i->c]);
+      const S& a = at[i->a];
+      const S& b = at[i->b];
+      const S& c = at[i->c];
+      switch (i->op) {  // the most frequent operations without a call
+        case Op::multiply:
+          at[into] = a * b;
+          break;
+        case Op::multiply_add:
+          at[into] = a * b + c;
+          break;
+        case Op::add:
+          at[into] = a + b;
+          break;
+        case Op::subtract:
+          at[into] = a - b;
+          break;
+        case Op::limit:
+          at[into] = max(min(a, b), c);
+          break;
+        default:
+          at[into] = apply(i->op, a, b, c);
       }
     }
   }

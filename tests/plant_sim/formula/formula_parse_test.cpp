@@ -76,9 +76,26 @@ TEST(Formula, HasTheFunctionsOfTheMathLibrary) {
 TEST(Formula, FindsWhatDependsOnParametersAloneOnce) {
   const formula::ExpressionProgram program =
       formula::record_formula("exp(k)*sqrt(k)*x + exp(k)*2*pi", {"x"}, {"k", "unused"}, "");
-  EXPECT_EQ(program.moving.size(), 2U);  // times x, plus
+  EXPECT_EQ(program.moving.size(), 1U);  // times x, plus
   EXPECT_EQ(program.constants.size(), 2U);
   EXPECT_EQ(program.uses, (std::vector<bool>{true, false}));
+}
+
+TEST(Formula, JoinsOperationsInPairsWithoutAnotherResult) {
+  const auto moving = [](const std::string& text) {
+    return formula::record_formula(text, {"x", "y"}, {"k"}, "").moving.size();
+  };
+  EXPECT_EQ(moving("x*y + k"), 1U);
+  EXPECT_EQ(moving("k + x*y"), 1U);
+  EXPECT_EQ(moving("max(min(x, 1), 0)"), 1U);
+  EXPECT_EQ(moving("(x*y + k)*(x*y)"), 3U);  // the product is used twice
+  const double x = 0.1;
+  const double y = 0.7;
+  const double k = -0.07;  // x y + k cancels: one rounding less would show
+  const double product = x * y;
+  EXPECT_EQ(value("x*y + k", x, y, k), product + k);
+  EXPECT_EQ(value("max(min(x + 3*k, 1), 0)", x, y, k), 0.0);
+  EXPECT_EQ(value("max(min(x + y, k), y)", x, y, k), y);
 }
 
 /// The refusal of a force whose formula this is.
