@@ -16,6 +16,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -62,12 +63,19 @@ struct InnovationSearch {
   }
 };
 
+struct SearchLimits {
+  std::size_t most_effects = kMostInnovationEffects;
+  /// True for effects that hold all of what is sought: where they leave much of the physics
+  /// unexplained, the search ends. Empty: never.
+  std::function<bool(const std::vector<std::string>& added)> complete;
+};
+
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
 /// the best that it has found: this is taken where its likelihood is the higher one. Records that
-/// only score take no part. The search adds at most `most_effects`.
-[[nodiscard]] InnovationSearch search_innovations(
-    const SearchContext& context, const ModelStage& first, const SearchBranch& held,
-    std::size_t most_effects = kMostInnovationEffects);
+/// only score take no part.
+[[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
+                                                  const ModelStage& first, const SearchBranch& held,
+                                                  const SearchLimits& limits = {});
 
 /// The context without records that only score.
 [[nodiscard]] SearchContext without_holdouts(SearchContext context);

@@ -76,15 +76,22 @@ std::optional<LawSearch> search_laws(const SearchContext& context, const ModelSt
   const std::vector<Law> dictionary = laws_at(context, site, choice);
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
-  search.innovations = search_innovations(search.context, first, {}, most_effects);
+  const auto laws_of = [&](const std::vector<std::string>& added) {
+    std::vector<Law> laws;
+    for (const std::string& name : added) {
+      const auto law = std::find_if(dictionary.begin(), dictionary.end(),
+                                    [&](const Law& one) { return one.effect.name == name; });
+      if (law != dictionary.end()) laws.push_back(*law);
+    }
+    return laws;
+  };
+  const auto complete = [&](const std::vector<std::string>& added) {
+    return laws_of(added).size() >= kMostLaws;
+  };
+  search.innovations = search_innovations(search.context, first, {}, {most_effects, complete});
   const InnovationSearch& found = search.innovations;
-  const std::vector<std::string>& added = found.final.model.added;
   if (found.physics_missing()) return {};
-  for (const std::string& name : added) {
-    const auto law = std::find_if(dictionary.begin(), dictionary.end(),
-                                  [&](const Law& one) { return one.effect.name == name; });
-    if (law != dictionary.end()) search.laws.push_back(*law);
-  }
+  search.laws = laws_of(found.final.model.added);
   if (search.laws.empty() || search.laws.size() > kMostLaws) return {};
   return search;
 }
