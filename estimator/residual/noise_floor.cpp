@@ -96,6 +96,15 @@ Energies windows_of(std::span<const double> y_m, double step_m) {
   return out;
 }
 
+/// Leaves out windows whose readings repeat exactly, where others do not: an encoder whose step
+/// interpolation hides stands still there, with noise or without.
+void leave_out_repeated(Energies& energies) {
+  const auto repeats = [](double energy) { return energy == 0.0; };
+  if (std::all_of(energies.all.begin(), energies.all.end(), repeats)) return;
+  std::erase_if(energies.all, repeats);
+  std::erase_if(energies.moving, repeats);
+}
+
 /// Mean square of pure noise from windows, some of which contain motion.
 double level_of(std::vector<double> e) {
   const auto k = static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(e.size()));
@@ -155,8 +164,9 @@ NoiseFloor noise_floor(std::span<const double> y_m, double sample_time_s) {
   out.encoder_step_m = encoder_step_m(y_m);
   out.least_m = out.encoder_step_m / std::sqrt(12.0);
   if (y_m.size() < kWindow + kOrder) return out;
-  const Energies energies = windows_of(y_m, out.encoder_step_m);
+  Energies energies = windows_of(y_m, out.encoder_step_m);
   if (energies.all.empty()) return out;
+  if (out.encoder_step_m == 0.0) leave_out_repeated(energies);
   if (!(sample_time_s <= kSlowest_s)) {
     if (out.least_m == 0.0) out.least_m = kLeastShare * std::sqrt(level_of(energies.all));
     return out;

@@ -11,8 +11,10 @@
 // a fast motion leaks through; the mean of the others is the answer. It contains the rounding,
 // step^2/12 where noise or motion spread the readings over the step. A rod at rest with less noise
 // than that hides it: then windows in which the rod moves by steps are used, if there are any, and
-// the figure is never below step/sqrt(12). Sources: J. von Neumann, Annals of Mathematical
-// Statistics 12 (1941) 367, for order 1; B. Widrow, I. Kollar, Quantization Noise, chapter 5.
+// the figure is never below step/sqrt(12). Where no step is found, since a record was interpolated,
+// windows of readings that repeat exactly say nothing. Sources: J. von Neumann, Annals of
+// Mathematical Statistics 12 (1941) 367, for order 1; B. Widrow, I. Kollar, Quantization Noise,
+// chapter 5.
 #pragma once
 
 #include <span>

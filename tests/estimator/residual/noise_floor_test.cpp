@@ -81,6 +81,39 @@ TEST(NoiseFloor, OfARodAtRestIsNeverBelowTheRounding) {
   EXPECT_LE(quiet.sd_m, 1.2 * 5e-6 / std::sqrt(12.0));
 }
 
+TEST(NoiseFloor, OfAnInterpolatedEncoderAtRestIsThatOfItsMotion) {
+  // read with jitter at about 140 Hz, interpolated to 200 Hz: no step is left to be found
+  const auto moves = [](double t) {
+    return 0.3 + (std::fmod(t, 2.0) < 1.0 ? 0.01 * (1 - std::cos(2 * M_PI * t)) : 0.0);
+  };
+  constexpr double kStep_m = 150e-6;
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> wait_s(0.006, 0.0083);
+  const auto reading = [&](double t) { return kStep_m * std::round(moves(t) / kStep_m); };
+  std::vector<double> y_m;
+  double square_m2 = 0.0;
+  double moving = 0.0;
+  double from_s = 0.0;
+  double to_s = wait_s(engine);
+  for (int k = 0; k < 2400; ++k) {
+    const double t = 0.005 * k;
+    while (to_s < t) {
+      from_s = to_s;
+      to_s += wait_s(engine);
+    }
+    const double share = (t - from_s) / (to_s - from_s);
+    y_m.push_back(reading(from_s) + share * (reading(to_s) - reading(from_s)));
+    if (std::fmod(t, 2.0) >= 1.0) continue;
+    square_m2 += std::pow(y_m.back() - moves(t), 2);
+    moving += 1.0;
+  }
+  const double error_m = std::sqrt(square_m2 / moving);
+  const NoiseFloor found = noise_floor(y_m, 0.005);
+  EXPECT_EQ(found.encoder_step_m, 0.0);
+  EXPECT_LT(found.sd_m, error_m);
+  EXPECT_GT(found.sd_m, 0.1 * error_m);  // interpolation takes most of the high frequencies
+}
+
 TEST(NoiseFloor, FindsStepsThatDecimalsBlur) {
   EXPECT_NEAR(encoder_step_m(readings(multisine, 2e-6, 1.2207e-6, 1e-7)), 1.2207e-6, 2e-9);
   EXPECT_NEAR(encoder_step_m(readings(multisine, 0.0, 2e-5, 0.0)), 2e-5, 1e-8);
