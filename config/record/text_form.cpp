@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "config/record/layout.h"
 #include "config/record/text_fields.h"
@@ -191,13 +192,14 @@ class FormFinder {
     return known;
   }
 
+  /// A line of as many fields as the rows, directly above them; blank lines between are passed.
+  struct Candidate {
+    std::size_t line = 0;
+    std::vector<std::string> names;
+    bool units = false;
+  };
+
   void name_columns() {
-    // Lines of as many fields as the rows, directly above them; blank lines between are passed.
-    struct Candidate {
-      std::size_t line = 0;
-      std::vector<std::string> names;
-      bool units = false;
-    };
     std::vector<Candidate> above;
     for (std::size_t i = first_; i-- > 0 && first_ - i < 12;) {
       std::string_view line = lines_[i].text;
@@ -232,10 +234,35 @@ class FormFinder {
       form_.units = units->names;
       form_.unit_line = units->line + 1;
     }
+    for (const Candidate& candidate : above) {
+      if (&candidate == units || (header != nullptr && candidate.line < header->line)) continue;
+      require_no_row(candidate.line, candidate.names, header == &candidate ? nullptr : header);
+    }
     if (header == nullptr) return;
     form_.names = header->names;
     for (std::string& name : form_.names) name = clean_text(name);
     form_.header_line = header->line + 1;
+  }
+
+  /// Refuses a line above the table that begins with a number and is mostly numbers: one field
+  /// keeps it from being a row. `header`: the line of names, where it is another.
+  void require_no_row(std::size_t line, const std::vector<std::string>& fields,
+                      const Candidate* header) const {
+    std::size_t numbers = 0;
+    std::optional<std::size_t> words;
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+      if (form_.kinds[c] != FieldKind::number && form_.kinds[c] != FieldKind::clock) continue;
+      double value = 0.0;
+      const FieldKind kind = kind_of(fields[c], form_.dialect.decimal, value);
+      if (kind == FieldKind::text && numbers == 0) return;
+      if (kind == FieldKind::text && !words) words = c;
+      numbers += kind == FieldKind::number || kind == FieldKind::clock ? 1 : 0;
+    }
+    if (!words || 2 * numbers <= fields.size()) return;
+    const bool named = header != nullptr && !header->names[*words].empty();
+    throw bad_data(name_ + ":" + std::to_string(line + 1),
+                   "column " + (named ? header->names[*words] : std::to_string(*words + 1)) +
+                       ": '" + fields[*words] + "' is no number");
   }
 
   /// Reads LabVIEW's tags in the lines above the table: the period, the channels' units.

@@ -106,6 +106,16 @@ TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
   expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is 'inf'");
 }
 
+TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
+  const std::string names = "Time [s],Command [V],Position [mm]\n";
+  expect_bad(names + "0,error,0.1\n0.005,2,0.2\n0.010,3,0.3\n", ":2",
+             "column Command [V]: 'error' is no number");
+  expect_bad("0,error,0.1\n0.005,2,0.2\n0.010,3,0.3\n", ":1", "column 2: 'error' is no number");
+  // a row of words, or of scales that have words before them, is none
+  EXPECT_EQ(read(names + "measured,commanded,measured\n" + kRows).t_s.size(), 3U);
+  EXPECT_EQ(read(names + "Scale,0.001,1\n" + kRows).t_s.size(), 3U);
+}
+
 TEST(Csv, RefusesMagnitudesThatNoMachineHas) {
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,1e300\n", ":3", "y_m is 1e+300; allowed: magnitudes");
   expect_bad("t_s,u_V,y_mm\n0,1,0\n0.005,1,-1.1e9\n", ":3", "magnitudes up to 1e+06 m");
