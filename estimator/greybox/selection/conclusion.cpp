@@ -70,24 +70,16 @@ void list_free_runs(const SearchContext& context, Diagnosis& result) {
   });
 }
 
-/// Leaves out places that explain next to nothing: an error that enters nowhere has none.
-void name_places(std::vector<Localisation>& where) {
-  std::erase_if(where,
-                [](const Localisation& one) { return !(one.explained_ratio > kNamesAPlace); });
-}
-
 /// Localises the unexplained residual. The model as given shows more clearly what effects taken in
 /// place of the right one have absorbed. A bundle of effects is such a stand-in.
 void localise_remainder(const SearchContext& context, const ModelStage& first,
                         const ModelStage& final, Diagnosis& result) {
-  result.whole = localise(context, first);
-  name_places(result.whole);
+  result.whole = places_of(context, first);
   result.where = result.whole;
   if (final.added.empty()) return;
   result.where_is_whole = true;
   if (final.added.size() >= kStandIn) return;
-  std::vector<Localisation> left = localise(context, final);
-  name_places(left);
+  std::vector<Localisation> left = places_of(context, final);
   const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
   };
@@ -142,6 +134,13 @@ void take_errors(Diagnosis& result) {
 }
 
 }  // namespace
+
+std::vector<Localisation> places_of(const SearchContext& context, const ModelStage& stage) {
+  std::vector<Localisation> where = localise(context, stage);
+  std::erase_if(where,
+                [](const Localisation& one) { return !(one.explained_ratio > kNamesAPlace); });
+  return where;
+}
 
 Diagnosis begun(const Diagnosis& result) {
   Diagnosis begun;
@@ -309,8 +308,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   }
   // effects taken for want of the right one hide it: the model as given shows it more clearly
   if (physics) {
-    result.whole = localise(search, first);
-    name_places(result.whole);
+    result.whole = places_of(search, first);
     result.where = result.whole;
     result.where_is_whole = true;
   }

@@ -9,6 +9,11 @@ namespace estimator::greybox::selection {
 /// The fields of a diagnosis that precede any conclusion: a result to conclude again.
 [[nodiscard]] Diagnosis begun(const Diagnosis& result);
 
+/// localise() without the places that explain next to nothing: an error that enters nowhere has
+/// none.
+[[nodiscard]] std::vector<Localisation> places_of(const SearchContext& context,
+                                                  const ModelStage& stage);
+
 /// A verdict by the held-out errors of simulations on `result.search`. `search`: the context that
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);

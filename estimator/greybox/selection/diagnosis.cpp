@@ -27,6 +27,9 @@ constexpr double kClearlyWorse = 0.25;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
 
+/// Effects beside which much physics is missing, from which on laws are tried in their place.
+constexpr std::size_t kBeforeLaws = 2;
+
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
 /// nearly the same, the disturbance in both decides.
@@ -53,8 +56,19 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
   const ModelStage first = start.first;
-  InnovationSearch innovations = search_innovations(search, first, start.branch);
   result.search = abandon_search(search, start);
+  SearchLimits limits;
+  bool asked = false;
+  limits.give_up = [&](const InnovationStage& stage, double inexact_nats) {
+    if (asked || stage.model.added.size() < kBeforeLaws ||
+        !leaves_much_physics(stage, inexact_nats)) {
+      return false;
+    }
+    asked = true;
+    return learn_law_early(search, first, stage, result);
+  };
+  InnovationSearch innovations = search_innovations(search, first, start.branch, limits);
+  if (result.verdict == Verdict::learned) return;
   if (innovations.final.linear.empty()) {  // no likelihood
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);

@@ -13,6 +13,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Gain of a curve where much physics is missing, over that of a mere remainder.
+constexpr double kMuch = 3.0;
+
 /// Half the fall of the squared innovations, in units of the floor, when the columns join the
 /// Jacobian, whose parameters their priors hold.
 double gain_nats(const InnovationStage& stage, const MatrixXd& columns) {
@@ -82,6 +85,10 @@ double largest_curve_nats(const InnovationStage& stage) {
 
 bool leaves_physics(const InnovationStage& stage) {
   return largest_curve_nats(stage) > kCurve_nats;
+}
+
+bool leaves_much_physics(const InnovationStage& stage, double inexact_nats) {
+  return largest_curve_nats(stage) > kMuch * (kCurve_nats + inexact_nats);
 }
 
 }  // namespace estimator::greybox::selection

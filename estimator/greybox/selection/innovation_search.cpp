@@ -26,9 +26,6 @@ constexpr double kInexactLines = 0.0005;
 constexpr double kOutOfReach_nats = 200.0;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
-/// Gain of a curve beside all that is sought, over that of a mere remainder, which the lines and
-/// effects that may still come do not make up for.
-constexpr double kHopeless = 3.0;
 /// Fastest speed over the RMS of the motion's.
 constexpr double kFastest = 3.0;
 
@@ -177,22 +174,20 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::set<std::string> dropped;
-  const auto hopeless = [&] {
-    return limits.complete && limits.complete(stage.model.added) &&
-           largest_curve_nats(stage) >
-               kHopeless * (kCurve_nats + inexact_nats(context, search, stage));
-  };
+  bool gave_up = false;
   const auto extend_fully = [&] {
     bool more = true;
-    while (more && !hopeless() && !context.cancelled()) {
+    while (more && !gave_up && !context.cancelled()) {
       if (stage.model.added.empty()) search.bare = stage;
       const RoundOptions options{Candidates::effects_and_lines, limits.most_effects,
                                  evidence_nats()};
       more = extend(context, stage, options, search.memo, search.rounds, dropped);
+      gave_up =
+          more && limits.give_up && limits.give_up(stage, inexact_nats(context, search, stage));
     }
   };
   extend_fully();
-  if (hopeless()) {
+  if (gave_up) {
     search.final = std::move(stage);
     weigh_remainder(context, search);
     return search;

@@ -65,9 +65,9 @@ struct InnovationSearch {
 
 struct SearchLimits {
   std::size_t most_effects = kMostInnovationEffects;
-  /// True for effects that hold all of what is sought: where they leave much of the physics
-  /// unexplained, the search ends. Empty: never.
-  std::function<bool(const std::vector<std::string>& added)> complete;
+  /// Asked at each stage that a round has reached, with the gains that inexact models may owe: true
+  /// ends the search there. Empty: never.
+  std::function<bool(const InnovationStage&, double inexact_nats)> give_up;
 };
 
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and

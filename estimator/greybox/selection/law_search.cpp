@@ -85,10 +85,11 @@ std::optional<LawSearch> search_laws(const SearchContext& context, const ModelSt
     }
     return laws;
   };
-  const auto complete = [&](const std::vector<std::string>& added) {
-    return laws_of(added).size() >= kMostLaws;
+  const auto give_up = [&](const InnovationStage& stage, double inexact_nats) {
+    return laws_of(stage.model.added).size() >= kMostLaws &&
+           leaves_much_physics(stage, inexact_nats);
   };
-  search.innovations = search_innovations(search.context, first, {}, {most_effects, complete});
+  search.innovations = search_innovations(search.context, first, {}, {most_effects, give_up});
   const InnovationSearch& found = search.innovations;
   if (found.physics_missing()) return {};
   search.laws = laws_of(found.final.model.added);

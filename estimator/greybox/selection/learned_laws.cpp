@@ -110,6 +110,28 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis
   return take_better(context, first, search_curve(context, named), result);
 }
 
+bool learn_law_early(const SearchContext& context, const ModelStage& first,
+                     const InnovationStage& stage, Diagnosis& result) {
+  constexpr std::size_t kMostEffects = 2;
+  if (context.problem.data.fitted_records > 1) return false;  // these may differ
+  const std::vector<CurveGain> curves = curve_gains(stage);
+  // what goes with time, or sets in at one, is a change before it is a law
+  if (curves.empty() || curves.front().variable == "time" ||
+      likeliest_jump(stage).gain_nats > curves.front().gain_nats) {
+    return false;
+  }
+  const std::optional<LawSearch> found =
+      search_laws(context, first, "", stage.model.added, LawChoice::unexplained, kMostEffects);
+  if (!found || !(penalised(found->innovations.final) < penalised(stage) - 2.0 * kRivals_nats))
+    return false;
+  Diagnosis named = result;
+  named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
+  named.whole = places_of(context, first);
+  if (!take_better(context, first, found, named)) return false;
+  result = std::move(named);
+  return true;
+}
+
 bool prefer_law(const SearchContext& context, const ModelStage& first,
                 const InnovationSearch& innovations, Diagnosis& result) {
   const InnovationStage& named = innovations.final;

@@ -21,6 +21,7 @@ using diagnose_test::with_offset;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 std::vector<std::string> names_of(const std::vector<Law>& laws) {
   std::vector<std::string> names;
@@ -84,6 +85,59 @@ FewEffects searched_with(const std::vector<std::string>& effects, const std::str
   });
   result.found = search_innovations(only, first_stage(only), {});
   return result;
+}
+
+TEST(Laws, ASearchEndsWhereItIsGivenUp) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=10,friction.coulomb_N=60,outside.force_N=10", 17);
+  std::size_t asked = 0;
+  SearchLimits limits;
+  limits.give_up = [&](const InnovationStage& stage, double) {
+    ++asked;
+    return stage.model.added.size() == 1;
+  };
+  const InnovationSearch found = search_innovations(context, first_stage(context), {}, limits);
+  EXPECT_EQ(found.rounds.size(), asked);
+  EXPECT_THAT(found.final.model.added, SizeIs(1));
+  EXPECT_TRUE(found.without.empty());
+}
+
+/// The stage with these effects alone, fitted to the record, and what an early law makes of it.
+struct EarlyLaw {
+  bool much = false;  ///< what they leave
+  bool learned = false;
+  Diagnosis diagnosis;
+};
+EarlyLaw early_law(const std::vector<std::string>& effects, const std::string& spec) {
+  const FewEffects held = searched_with(effects, spec);
+  const InnovationStage& stage = held.found.final;
+  EXPECT_THAT(stage.model.added, testing::UnorderedElementsAreArray(effects));
+  EarlyLaw result;
+  result.much = leaves_much_physics(stage, held.found.inexact_nats);
+  result.diagnosis.noise_floor_m = held.context.problem.data.noise_floor_m;
+  result.learned =
+      learn_law_early(held.context, first_stage(held.context), stage, result.diagnosis);
+  return result;
+}
+
+TEST(Laws, ALawIsLearnedEarlyWhereEffectsLeaveMuch) {
+  const EarlyLaw cubic =
+      early_law({"coupled_slaves"}, "motion=multisine,length_s=15,left_out=cubic_damping");
+  EXPECT_TRUE(cubic.much);
+  ASSERT_TRUE(cubic.learned);
+  EXPECT_EQ(cubic.diagnosis.verdict, Verdict::learned);
+  EXPECT_THAT(names_of(cubic.diagnosis.laws), ElementsAre("cubic_damping"));
+  EXPECT_FALSE(cubic.diagnosis.where.empty());
+}
+
+TEST(Laws, NoLawIsLearnedEarlyWhereEffectsExplainTheRecord) {
+  const EarlyLaw right =
+      early_law({"null_bias", "quadratic_damping"},
+                "motion=multisine,length_s=15,quadratic_damping.coefficient_N_s2_per_m2=18000,"
+                "null_bias.offset_V=0.1");
+  EXPECT_FALSE(right.much);
+  EXPECT_FALSE(right.learned);
+  EXPECT_EQ(right.diagnosis.verdict, Verdict::nothing_missing);
 }
 
 TEST(Laws, ALawCompetesWithTheEffectThatPassesForIt) {
