@@ -84,14 +84,15 @@ inline V decay(V x) {
 
 template <class V>
 inline V tanh(V x) {
-  constexpr double kOne = 20.0;  // tanh 20 is 1 within half a unit in the last place
+  constexpr double kSaturated = 20.0;  // tanh 20 is 1 within half a unit in the last place
   const V size = x < 0.0 ? -x : x;
-  const V twice = -2.0 * (size > kOne ? V{} + kOne : size);
+  const V twice = -2.0 * (size > kSaturated ? V{} + kSaturated : size);
   const V n = (twice * 1.4426950408889634 + kRounder) - kRounder;
   const V scale = power_of_two<V>(n);
   const V t = scale * exp_of_rest_less_one(twice, n) + (scale - 1.0);
   const V y = t / (2.0 + t);
-  return x < 0.0 ? y : -y;
+  const V positive = x > 0.0 ? -y : x;  // zeros and NaN as they are
+  return x < 0.0 ? y : positive;
 }
 
 template <class V>

@@ -197,6 +197,7 @@ class FormFinder {
     std::size_t line = 0;
     std::vector<std::string> names;
     bool units = false;
+    bool commented = false;
   };
 
   void name_columns() {
@@ -213,7 +214,7 @@ class FormFinder {
         if (above.empty() && commented) continue;  // a comment between header and rows
         break;
       }
-      above.push_back({i, names, is_unit_row(names)});
+      above.push_back({i, names, is_unit_row(names), commented});
     }
     const Candidate* units = nullptr;
     const Candidate* header = nullptr;
@@ -235,7 +236,8 @@ class FormFinder {
       form_.unit_line = units->line + 1;
     }
     for (const Candidate& candidate : above) {
-      if (&candidate == units || (header != nullptr && candidate.line < header->line)) continue;
+      if (&candidate == units || candidate.commented) continue;
+      if (header != nullptr && candidate.line < header->line) continue;
       require_no_row(candidate.line, candidate.names, header == &candidate ? nullptr : header);
     }
     if (header == nullptr) return;
@@ -249,20 +251,23 @@ class FormFinder {
   void require_no_row(std::size_t line, const std::vector<std::string>& fields,
                       const Candidate* header) const {
     std::size_t numbers = 0;
-    std::optional<std::size_t> words;
+    std::optional<std::size_t> damaged;
     for (std::size_t c = 0; c < fields.size(); ++c) {
       if (form_.kinds[c] != FieldKind::number && form_.kinds[c] != FieldKind::clock) continue;
       double value = 0.0;
       const FieldKind kind = kind_of(fields[c], form_.dialect.decimal, value);
       if (kind == FieldKind::text && numbers == 0) return;
-      if (kind == FieldKind::text && !words) words = c;
+      if (kind == FieldKind::text && !damaged) damaged = c;
       numbers += kind == FieldKind::number || kind == FieldKind::clock ? 1 : 0;
     }
-    if (!words || 2 * numbers <= fields.size()) return;
-    const bool named = header != nullptr && !header->names[*words].empty();
+    if (!damaged || 2 * numbers <= fields.size()) return;
+    const bool named = header != nullptr && !header->names[*damaged].empty();
+    const std::string column =
+        named ? clean_text(header->names[*damaged]) : std::to_string(*damaged + 1);
+    const bool clock = form_.kinds[*damaged] == FieldKind::clock;
     throw bad_data(name_ + ":" + std::to_string(line + 1),
-                   "column " + (named ? header->names[*words] : std::to_string(*words + 1)) +
-                       ": '" + fields[*words] + "' is no number");
+                   "column " + column + ": " + record::quoted(fields[*damaged]) +
+                       (clock ? " is no date and time" : " is no number"));
   }
 
   /// Reads LabVIEW's tags in the lines above the table: the period, the channels' units.

@@ -23,6 +23,7 @@ constexpr double kMostSteps = 1000.0;  // larger differences do not constrain th
 constexpr double kOnGridShare = 0.98;
 constexpr double kDither =
     0.35;  // noise, in steps, that makes rounding at rest like that in motion
+constexpr std::size_t kFewestWindows = 4;
 constexpr double kSlowest_s = 0.05;
 constexpr double kLeastShare = 0.01;  // share of noise in what the differences leave of a slow log
 
@@ -96,11 +97,15 @@ Energies windows_of(std::span<const double> y_m, double step_m) {
   return out;
 }
 
-/// Leaves out windows whose readings repeat exactly, where others do not: an encoder whose step
-/// interpolation hides stands still there, with noise or without.
-void leave_out_repeated(Energies& energies) {
-  const auto repeats = [](double energy) { return energy == 0.0; };
-  if (std::all_of(energies.all.begin(), energies.all.end(), repeats)) return;
+/// Leaves out windows whose readings repeat but for the arithmetic's rounding, where enough others
+/// are left: an encoder whose step interpolation hides stands still there, and shows no noise.
+void leave_out_repeated(std::span<const double> y_m, Energies& energies) {
+  double largest_m = 0.0;
+  for (const double y : y_m) largest_m = std::max(largest_m, std::isnan(y) ? 0.0 : std::abs(y));
+  const auto repeats = [&](double energy) { return std::sqrt(energy) <= kDust * largest_m; };
+  const auto left = static_cast<std::size_t>(std::count_if(
+      energies.all.begin(), energies.all.end(), [&](double energy) { return !repeats(energy); }));
+  if (left < kFewestWindows) return;
   std::erase_if(energies.all, repeats);
   std::erase_if(energies.moving, repeats);
 }
@@ -166,12 +171,12 @@ NoiseFloor noise_floor(std::span<const double> y_m, double sample_time_s) {
   if (y_m.size() < kWindow + kOrder) return out;
   Energies energies = windows_of(y_m, out.encoder_step_m);
   if (energies.all.empty()) return out;
-  if (out.encoder_step_m == 0.0) leave_out_repeated(energies);
+  if (out.encoder_step_m == 0.0) leave_out_repeated(y_m, energies);
   if (!(sample_time_s <= kSlowest_s)) {
     if (out.least_m == 0.0) out.least_m = kLeastShare * std::sqrt(level_of(energies.all));
     return out;
   }
-  out.at_rest = energies.moving.size() < std::max<std::size_t>(4, energies.all.size() / 20);
+  out.at_rest = energies.moving.size() < std::max(kFewestWindows, energies.all.size() / 20);
   double square = level_of(energies.all);
   const double rounding = out.encoder_step_m * out.encoder_step_m / 12.0;
   const double dithers = std::pow(kDither * out.encoder_step_m, 2);

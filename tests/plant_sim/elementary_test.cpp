@@ -130,6 +130,18 @@ TEST(Tanh, IsWithinThreeUnitsInTheLastPlace) {
 
 TEST(Tanh, EndsInOneAndIsOdd) {
   EXPECT_EQ(tanh(0.0), 0.0);
+  for (const double zero : {0.0, -0.0}) {
+    EXPECT_EQ(std::signbit(tanh(zero)), std::signbit(zero));
+    EXPECT_EQ(std::signbit(tanh(Simd(zero))[1]), std::signbit(zero));
+  }
+  Simd mixed = 0.5;
+  mixed.set(1, std::nan(""));
+  mixed.set(2, kInfinity);
+  mixed.set(3, -kInfinity);
+  EXPECT_EQ(tanh(mixed)[0], tanh(0.5));
+  EXPECT_TRUE(std::isnan(tanh(mixed)[1]));
+  EXPECT_EQ(tanh(mixed)[2], 1.0);
+  EXPECT_EQ(tanh(mixed)[3], -1.0);
   EXPECT_EQ(tanh(kInfinity), 1.0);
   EXPECT_EQ(tanh(-kInfinity), -1.0);
   EXPECT_EQ(tanh(1e300), 1.0);

@@ -192,19 +192,6 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   return true;
 }
 
-/// True where a curve over the motion promises more than any change in time.
-bool motion_explains_more(const InnovationStage& stage) {
-  double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
-  for (const ChangeScore& score : change_scores(stage)) {
-    const bool both = score.gain_nats > kChangeOfEffect * score.throughout_nats;
-    best_change = std::max(best_change, score.gain_nats + (both ? score.throughout_nats : 0.0));
-  }
-  for (const CurveGain& curve : curve_gains(stage)) {
-    if (curve.variable != "time" && curve.gain_nats > kMotionExplains * best_change) return true;
-  }
-  return false;
-}
-
 /// The search with the changes of a stage described, the lines that are seen beside them, and what
 /// remains.
 ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
@@ -268,6 +255,18 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
 }
 
 }  // namespace
+
+bool motion_explains_more(const InnovationStage& stage) {
+  double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
+  for (const ChangeScore& score : change_scores(stage)) {
+    const bool both = score.gain_nats > kChangeOfEffect * score.throughout_nats;
+    best_change = std::max(best_change, score.gain_nats + (both ? score.throughout_nats : 0.0));
+  }
+  for (const CurveGain& curve : curve_gains(stage)) {
+    if (curve.variable != "time" && curve.gain_nats > kMotionExplains * best_change) return true;
+  }
+  return false;
+}
 
 std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base,
                                            ChangesSought sought) {

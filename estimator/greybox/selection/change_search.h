@@ -10,6 +10,9 @@
 
 namespace estimator::greybox::selection {
 
+/// True where a curve over the motion promises more than any change in time.
+[[nodiscard]] bool motion_explains_more(const InnovationStage& stage);
+
 struct ChangeSearch {
   SearchContext context;  ///< the problem with the changes in its model
   InnovationSearch innovations;

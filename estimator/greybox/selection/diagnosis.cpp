@@ -59,16 +59,21 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   result.search = abandon_search(search, start);
   SearchLimits limits;
   bool asked = false;
-  limits.give_up = [&](const InnovationStage& stage, double inexact_nats) {
+  bool learned = false;
+  limits.ends_at = [&](const InnovationStage& stage, double inexact_nats) {
     if (asked || stage.model.added.size() < kBeforeLaws ||
         !leaves_much_physics(stage, inexact_nats)) {
       return false;
     }
     asked = true;
-    return learn_law_early(search, first, stage, result);
+    learned = learn_law_early(search, first, stage, start.branch.stage, result);
+    return learned;
   };
   InnovationSearch innovations = search_innovations(search, first, start.branch, limits);
-  if (result.verdict == Verdict::learned) return;
+  if (learned) {
+    if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
+    return;
+  }
   if (innovations.final.linear.empty()) {  // no likelihood
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);

@@ -174,27 +174,21 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::set<std::string> dropped;
-  bool gave_up = false;
   const auto extend_fully = [&] {
     bool more = true;
-    while (more && !gave_up && !context.cancelled()) {
+    while (more && !search.ended_early && !context.cancelled()) {
       if (stage.model.added.empty()) search.bare = stage;
       const RoundOptions options{Candidates::effects_and_lines, limits.most_effects,
                                  evidence_nats()};
       more = extend(context, stage, options, search.memo, search.rounds, dropped);
-      gave_up =
-          more && limits.give_up && limits.give_up(stage, inexact_nats(context, search, stage));
+      search.ended_early =
+          more && limits.ends_at && limits.ends_at(stage, inexact_nats(context, search, stage));
     }
   };
   extend_fully();
-  if (gave_up) {
-    search.final = std::move(stage);
-    weigh_remainder(context, search);
-    return search;
-  }
-  if (take_line_for_resonance(context, search, stage)) extend_fully();
-  take_held(context, held.stage, evidence_nats(), stage, search.rounds);
-  for (int round = 0; !context.cancelled(); ++round) {
+  if (!search.ended_early && take_line_for_resonance(context, search, stage)) extend_fully();
+  if (!search.ended_early) take_held(context, held.stage, evidence_nats(), stage, search.rounds);
+  for (int round = 0; !search.ended_early && !context.cancelled(); ++round) {
     search.without = eliminate(context, stage, evidence_nats());
     if (round == kMostExchanges || !exchange(context, search, stage)) break;
     extend_fully();

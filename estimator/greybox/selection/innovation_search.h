@@ -46,6 +46,8 @@ struct InnovationSearch {
   double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion
   double inexact_nats = 0.0;  ///< gains that inexact models of what was explained may owe
 
+  bool ended_early = false;  ///< by SearchLimits::ends_at
+
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
@@ -63,11 +65,12 @@ struct InnovationSearch {
   }
 };
 
+/// Where a search ends before nothing more is found.
 struct SearchLimits {
   std::size_t most_effects = kMostInnovationEffects;
   /// Asked at each stage that a round has reached, with the gains that inexact models may owe: true
   /// ends the search there. Empty: never.
-  std::function<bool(const InnovationStage&, double inexact_nats)> give_up;
+  std::function<bool(const InnovationStage&, double inexact_nats)> ends_at;
 };
 
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and

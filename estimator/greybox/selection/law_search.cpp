@@ -85,13 +85,13 @@ std::optional<LawSearch> search_laws(const SearchContext& context, const ModelSt
     }
     return laws;
   };
-  const auto give_up = [&](const InnovationStage& stage, double inexact_nats) {
+  const auto ends_at = [&](const InnovationStage& stage, double inexact_nats) {
     return laws_of(stage.model.added).size() >= kMostLaws &&
            leaves_much_physics(stage, inexact_nats);
   };
-  search.innovations = search_innovations(search.context, first, {}, {most_effects, give_up});
+  search.innovations = search_innovations(search.context, first, {}, {most_effects, ends_at});
   const InnovationSearch& found = search.innovations;
-  if (found.physics_missing()) return {};
+  if (found.ended_early || found.physics_missing()) return {};
   search.laws = laws_of(found.final.model.added);
   if (search.laws.empty() || search.laws.size() > kMostLaws) return {};
   return search;

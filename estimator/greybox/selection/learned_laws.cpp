@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/law_search.h"
@@ -111,19 +112,20 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis
 }
 
 bool learn_law_early(const SearchContext& context, const ModelStage& first,
-                     const InnovationStage& stage, Diagnosis& result) {
+                     const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   constexpr std::size_t kMostEffects = 2;
-  if (context.problem.data.fitted_records > 1) return false;  // these may differ
-  const std::vector<CurveGain> curves = curve_gains(stage);
-  // what goes with time, or sets in at one, is a change before it is a law
-  if (curves.empty() || curves.front().variable == "time" ||
-      likeliest_jump(stage).gain_nats > curves.front().gain_nats) {
-    return false;
-  }
+  // parameters may differ between records, and change within one, before a law is missing
+  if (context.problem.data.fitted_records > 1 || !motion_explains_more(stage)) return false;
   const std::optional<LawSearch> found =
-      search_laws(context, first, "", stage.model.added, LawChoice::unexplained, kMostEffects);
-  if (!found || !(penalised(found->innovations.final) < penalised(stage) - 2.0 * kRivals_nats))
-    return false;
+      search_laws(context, first, "", stage.model.added, LawChoice::against_effects, kMostEffects);
+  if (!found) return false;
+  const double enough = penalised(found->innovations.final) + 2.0 * kRivals_nats;
+  if (!(enough < penalised(stage))) return false;
+  if (!held.added.empty()) {
+    const InnovationStage other = settled(without_holdouts(context), held, stage.noise, kMostTurns,
+                                          wide(context.options.threads));
+    if (!(enough < penalised(other))) return false;
+  }
   Diagnosis named = result;
   named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
   named.whole = places_of(context, first);

@@ -11,11 +11,14 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
                               Diagnosis& result);
 
-/// Takes a law, beside at most one effect, where it explains the record and as many effects as
-/// `stage` has leave much unexplained: sooner than learn_laws(), which waits for all that effects
-/// may explain. False: `result` is as before.
+/// Takes one law, alone or beside one effect, or two laws, where they explain the record and a
+/// curve over the motion promises more than any change in time: sooner than learn_laws(), which
+/// waits for all that effects may explain. `stage`: effects that leave much unexplained; `held`:
+/// the best of a search by simulations; the laws have to be likelier than either. Laws that come
+/// near to named effects are not tried. False: `result` is as before.
 [[nodiscard]] bool learn_law_early(const SearchContext& context, const ModelStage& first,
-                                   const InnovationStage& stage, Diagnosis& result);
+                                   const InnovationStage& stage, const ModelStage& held,
+                                   Diagnosis& result);
 
 /// Takes a law where it is clearly likelier than the effects found, at the site of a single one, or
 /// at any in place of several: the nearest effects pass for a law that the library does not have.

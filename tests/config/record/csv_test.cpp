@@ -114,6 +114,8 @@ TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
   // a row of words, or of scales that have words before them, is none
   EXPECT_EQ(read(names + "measured,commanded,measured\n" + kRows).t_s.size(), 3U);
   EXPECT_EQ(read(names + "Scale,0.001,1\n" + kRows).t_s.size(), 3U);
+  // nor is a row that was commented out
+  EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
 }
 
 TEST(Csv, RefusesMagnitudesThatNoMachineHas) {

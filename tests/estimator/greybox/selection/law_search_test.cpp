@@ -87,12 +87,12 @@ FewEffects searched_with(const std::vector<std::string>& effects, const std::str
   return result;
 }
 
-TEST(Laws, ASearchEndsWhereItIsGivenUp) {
+TEST(Laws, ASearchEndsWhereItsLimitsSay) {
   const SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=10,friction.coulomb_N=60,outside.force_N=10", 17);
   std::size_t asked = 0;
   SearchLimits limits;
-  limits.give_up = [&](const InnovationStage& stage, double) {
+  limits.ends_at = [&](const InnovationStage& stage, double) {
     ++asked;
     return stage.model.added.size() == 1;
   };
@@ -100,6 +100,7 @@ TEST(Laws, ASearchEndsWhereItIsGivenUp) {
   EXPECT_EQ(found.rounds.size(), asked);
   EXPECT_THAT(found.final.model.added, SizeIs(1));
   EXPECT_TRUE(found.without.empty());
+  EXPECT_TRUE(found.ended_early);
 }
 
 /// The stage with these effects alone, fitted to the record, and what an early law makes of it.
@@ -116,13 +117,13 @@ EarlyLaw early_law(const std::vector<std::string>& effects, const std::string& s
   result.much = leaves_much_physics(stage, held.found.inexact_nats);
   result.diagnosis.noise_floor_m = held.context.problem.data.noise_floor_m;
   result.learned =
-      learn_law_early(held.context, first_stage(held.context), stage, result.diagnosis);
+      learn_law_early(held.context, first_stage(held.context), stage, {}, result.diagnosis);
   return result;
 }
 
 TEST(Laws, ALawIsLearnedEarlyWhereEffectsLeaveMuch) {
   const EarlyLaw cubic =
-      early_law({"coupled_slaves"}, "motion=multisine,length_s=15,left_out=cubic_damping");
+      early_law({"coupled_slaves"}, "motion=multisine,length_s=10,left_out=cubic_damping");
   EXPECT_TRUE(cubic.much);
   ASSERT_TRUE(cubic.learned);
   EXPECT_EQ(cubic.diagnosis.verdict, Verdict::learned);
@@ -133,7 +134,7 @@ TEST(Laws, ALawIsLearnedEarlyWhereEffectsLeaveMuch) {
 TEST(Laws, NoLawIsLearnedEarlyWhereEffectsExplainTheRecord) {
   const EarlyLaw right =
       early_law({"null_bias", "quadratic_damping"},
-                "motion=multisine,length_s=15,quadratic_damping.coefficient_N_s2_per_m2=18000,"
+                "motion=multisine,length_s=8,quadratic_damping.coefficient_N_s2_per_m2=18000,"
                 "null_bias.offset_V=0.1");
   EXPECT_FALSE(right.much);
   EXPECT_FALSE(right.learned);
