@@ -45,7 +45,8 @@ double equivalent_dof(std::size_t count) {
 
 /// Refines a trial step on increasing differences; 0 when they do not lie on its grid.
 double refined(double step, const std::vector<double>& sorted) {
-  for (double reach = 3.0; reach <= kMostSteps; reach *= 3.0) {
+  double reach = 3.0;
+  while (reach <= kMostSteps) {
     double above = 0.0;
     double below = 0.0;
     for (const double d : sorted) {
@@ -56,6 +57,7 @@ double refined(double step, const std::vector<double>& sorted) {
       below += n * n;
     }
     if (below > 0.0) step = above / below;
+    reach *= 3.0;
   }
   std::size_t on = 0;
   std::size_t all = 0;
