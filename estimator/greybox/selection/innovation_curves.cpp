@@ -71,6 +71,7 @@ std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
   std::stable_sort(attempts.begin(), attempts.end(),
                    [](const Attempt& a, const Attempt& b) { return a.gain_nats > b.gain_nats; });
   std::vector<CurveGain> gains;
+  gains.reserve(attempts.size());
   for (const Attempt& attempt : attempts) {
     gains.push_back(
         {site_of(attempt.input), attempt.variable->name, attempt.gain_nats, attempt.input});
