@@ -25,6 +25,8 @@ namespace config::record {
 /// Fields of a line without its end, quotes and blanks around removed.
 [[nodiscard]] std::vector<std::string> split_fields(std::string_view line, char separator);
 
+enum class FieldKind { number, missing, clock, text };
+
 /// How "1,234" beside decimal points, or "1.234" beside decimal commas, counts: one group of three
 /// digits may as well be the decimals of a number that is written the other way.
 enum class LoneGroup { refused, thousands };

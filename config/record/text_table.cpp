@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "config/record/clock_text.h"
 #include "config/record/text_fields.h"
@@ -14,8 +13,6 @@ namespace config::record {
 namespace {
 
 using schema::bad_data;
-
-constexpr std::size_t kHeadRows = 60;
 
 /// Looks like a number that was cut apart or is written another way: no name of anything.
 bool is_garbled(std::string_view field) {
@@ -75,65 +72,6 @@ bool is_row(const std::string_view line, const TextDialect& dialect, bool decide
   }
   return row.kinds.size() >= 2 && numbers >= 1 && numbers + clocks >= 2;
 }
-
-/// The decimals of a column in which commas may stand for either.
-class ColumnReading {
- public:
-  /// False: the field contradicts those before it.
-  [[nodiscard]] bool allows(const std::string& field, FieldKind kind) const {
-    if (kind != FieldKind::number) return true;
-    const Readings now(field);
-    return !((shows_point_ || now.shows_point) && (shows_comma_ || now.shows_comma));
-  }
-
-  void take(const std::string& field, FieldKind kind) {
-    Readings now(field);
-    if (kind != FieldKind::number) now = Readings("");
-    shows_point_ = shows_point_ || now.shows_point;
-    shows_comma_ = shows_comma_ || now.shows_comma;
-    if (now.either && either_.empty()) either_ = field;
-    if (head_.size() < kHeadRows) head_.emplace_back(now.point, now.comma);
-  }
-
-  [[nodiscard]] bool shows_comma() const { return shows_comma_; }
-  [[nodiscard]] bool shows_thousands() const { return shows_point_ && !either_.empty(); }
-
-  /// others: how the undecided columns of the file are read, by those that decide.
-  ColumnDecimals decimals(char others) const {
-    if (shows_comma_) return {',', LoneGroup::refused, ""};
-    if (shows_point_ || either_.empty()) {
-      return {'.', shows_point_ ? LoneGroup::thousands : LoneGroup::refused, ""};
-    }
-    if (others == ',') return {',', LoneGroup::refused, ""};
-    if (others == '.') return {'.', LoneGroup::thousands, ""};
-    return {'.', LoneGroup::refused, either_};
-  }
-
-  [[nodiscard]] std::vector<double> head(char decimal) const {
-    std::vector<double> values;
-    values.reserve(head_.size());
-    for (const auto& [point, comma] : head_) values.push_back(decimal == ',' ? comma : point);
-    return values;
-  }
-
- private:
-  struct Readings {
-    explicit Readings(const std::string& field) {
-      const bool by_point = parse_number(field, '.', point);
-      const bool thousands = by_point || parse_number(field, '.', point, LoneGroup::thousands);
-      const bool by_comma = parse_number(field, ',', comma);
-      shows_point = by_point && field.find_first_of(".,") != std::string::npos;
-      shows_comma = !thousands && by_comma;
-      either = thousands && !by_point && by_comma;
-    }
-    double point = std::nan(""), comma = std::nan("");
-    bool shows_point = false, shows_comma = false, either = false;
-  };
-
-  bool shows_point_ = false, shows_comma_ = false;
-  std::string either_;  ///< the first field with both readings
-  std::vector<std::pair<double, double>> head_;
-};
 
 void decide(const std::vector<ColumnReading>& columns, TextTable& table) {
   bool comma = false;

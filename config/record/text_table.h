@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/record/column_decimals.h"
 #include "config/record/text_fields.h"
 
 namespace config::record {
@@ -22,25 +23,12 @@ struct TextDialect {
 /// "decimal commas"
 [[nodiscard]] const char* decimal_words(const TextDialect& dialect);
 
-enum class FieldKind { number, missing, clock, text };
-
 /// The kind of a field without blanks around, and its number or time in s; NaN: none.
 [[nodiscard]] FieldKind kind_of(std::string_view field, char decimal, double& value);
 
 struct TextLine {
   std::string_view text;  ///< without its end
   std::size_t offset = 0;
-};
-
-/// The spellings allowed where a number has two readings.
-inline constexpr const char* kOneReading =
-    "numbers without separators of thousands, or one decimal sign in all of a column's numbers";
-
-/// How the numbers of one column are written.
-struct ColumnDecimals {
-  char decimal = '.';
-  LoneGroup lone = LoneGroup::refused;
-  std::string ambiguous;  ///< a field that has two readings, and none of the column says which
 };
 
 /// Rows in one dialect, the longest run of them that the lines have.
