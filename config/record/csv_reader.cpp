@@ -27,6 +27,7 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
     FileColumn column;
     if (!form.names.empty()) column.header = form.names[i];
     if (!form.units.empty()) column.unit = form.units[i];
+    if (form.cell_units[i].any()) column.unit = form.cell_units[i].unit().text;
     column.numbers = form.kinds[i] == FieldKind::number ||
                      (form.kinds[i] == FieldKind::missing && !column.header.empty());
     column.clock = form.kinds[i] == FieldKind::clock;
@@ -55,6 +56,10 @@ std::string words_of(const TextForm& form) {
   }
   if (form.header_line > 0) words += ", names in line " + std::to_string(form.header_line);
   if (form.unit_line > 0) words += ", units in line " + std::to_string(form.unit_line);
+  if (std::any_of(form.cell_units.begin(), form.cell_units.end(),
+                  [](const CellUnits& cells) { return cells.any(); })) {
+    words += ", units in the cells";
+  }
   return words + ", numbers from line " + std::to_string(form.data_line);
 }
 

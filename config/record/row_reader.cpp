@@ -45,7 +45,8 @@ RowReader::RowReader(TextWindow& window, const std::string& name, const TextForm
       ends_with_newline_(window.ends_with_newline()) {
   values_.resize(actions_.size());
   for (std::size_t i = 0; i < actions_.size(); ++i) {
-    has_points_.push_back(actions_[i] == Action::number && form.decimals[i].decimal == '.' ? 1 : 0);
+    const bool points = form.decimals[i].decimal == '.' && !form.cell_units[i].any();
+    has_points_.push_back(actions_[i] == Action::number && points ? 1 : 0);
   }
   reserve();
 }
@@ -255,18 +256,12 @@ inline double RowReader::number_in(std::string_view text, std::size_t column) {
   double value = std::numeric_limits<double>::quiet_NaN();
   if (is_missing(text)) return value;
   const ColumnDecimals& written = form_.decimals[column];
-  if (!parse_number(text, written.decimal, value, written.lone)) {
+  const std::optional<std::string_view> number = form_.cell_units[column].number_in(text);
+  if (!number || !parse_number(*number, written.decimal, value, written.lone)) {
     const std::string word = lower(text);
     const bool infinite = word == "inf" || word == "-inf" || word == "+inf" || word == "infinity" ||
                           word == "-infinity";
-    if (!infinite) {
-      const bool cut = at_ >= end_ && !ends_with_newline_;
-      const std::string problem = "column " + column_name(column) + ": " + quoted(text);
-      if (!cut && parse_number(text, written.decimal, value, LoneGroup::thousands)) {
-        throw bad_data(place(), problem + " has two readings", kOneReading);
-      }
-      throw bad_data(place(), problem + (cut ? " is no number, or is cut off" : " is no number"));
-    }
+    if (!infinite) throw no_number(text, column);
     value = std::numeric_limits<double>::infinity();
   }
   if (!std::isfinite(value)) {
@@ -274,6 +269,22 @@ inline double RowReader::number_in(std::string_view text, std::size_t column) {
                    "finite numbers");
   }
   return value;
+}
+
+schema::DataError RowReader::no_number(std::string_view text, std::size_t column) const {
+  const std::string begin = "column " + column_name(column) + ": ";
+  const ColumnDecimals& written = form_.decimals[column];
+  const bool cut = at_ >= end_ && !ends_with_newline_;
+  const std::string_view number = without_unit(text);
+  double value = 0.0;
+  if (cut) return bad_data(place(), begin + quoted(text) + " is no number, or is cut off");
+  if (!parse_number(number, written.decimal, value, LoneGroup::thousands)) {
+    return bad_data(place(), begin + quoted(text) + " is no number");
+  }
+  if (!parse_number(number, written.decimal, value, written.lone)) {
+    return bad_data(place(), begin + quoted(text) + " has two readings", kOneReading);
+  }
+  return bad_data(place(), begin + form_.cell_units[column].conflict(text), kOneUnit);
 }
 
 double RowReader::clock_in(std::string_view text, std::size_t column) {

@@ -71,6 +71,9 @@ class RowReader {
 
   double number_in(std::string_view text, std::size_t column);
 
+  /// The refusal of what stands for a number in `text`.
+  [[nodiscard]] schema::DataError no_number(std::string_view text, std::size_t column) const;
+
   double clock_in(std::string_view text, std::size_t column);
 
   TextWindow& window_;

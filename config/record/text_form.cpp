@@ -39,11 +39,13 @@ class FormFinder {
     form_.kinds = table.kinds;
     form_.head = table.head;
     form_.decimals = table.decimals;
+    form_.cell_units = table.cell_units;
     form_.data_line = table.first + 1;
     form_.data_offset = lines_[table.first].offset;
     first_ = table.first;
     name_columns();
     read_preamble();
+    for (std::size_t c = 0; c < form_.kinds.size(); ++c) require_one_unit(c);
     return form_;
   }
 
@@ -64,12 +66,13 @@ class FormFinder {
       command = command || (column.stem == "u" && column.si_unit == "V");
       position = position || (column.stem == "y" && column.si_unit == "m");
     }
-    if (!time || !command || !position || has_quoted_comma()) return false;
+    if (!time || !command || !position || has_quoted_comma() || has_unit_cells()) return false;
     form_.header_line = 1;
     form_.names = names;
     form_.kinds.assign(names.size(), FieldKind::number);
     form_.head.resize(names.size());
     form_.decimals.resize(names.size());
+    form_.cell_units.resize(names.size());
     form_.data_line = 2;
     form_.data_offset = lines_.size() > 1 ? lines_[1].offset : text_.size();
     // A column of words beside the three is left out, as in any other file.
@@ -95,6 +98,20 @@ class FormFinder {
             (parse_number(field, '.', value) || parse_number(field, ',', value))) {
           return true;
         }
+      }
+    }
+    return false;
+  }
+
+  /// A number with a unit behind it below the first line.
+  [[nodiscard]] bool has_unit_cells() const {
+    for (std::size_t i = 1; i < lines_.size(); ++i) {
+      const std::string_view line = lines_[i].text;
+      if (line.find_first_not_of("0123456789+-.,eE\" \t") == std::string_view::npos) continue;
+      const std::vector<std::string> fields = split_fields(line, ',');
+      if (std::any_of(fields.begin(), fields.end(),
+                      [](const std::string& field) { return unit_cell(field).has_value(); })) {
+        return true;
       }
     }
     return false;
@@ -255,7 +272,7 @@ class FormFinder {
     for (std::size_t c = 0; c < fields.size(); ++c) {
       if (form_.kinds[c] != FieldKind::number && form_.kinds[c] != FieldKind::clock) continue;
       double value = 0.0;
-      const FieldKind kind = kind_of(fields[c], form_.dialect.decimal, value);
+      const FieldKind kind = cell_kind(fields[c], form_.dialect.decimal, value);
       if (kind == FieldKind::text && numbers == 0) return;
       if (kind == FieldKind::text && !damaged) damaged = c;
       numbers += kind == FieldKind::number || kind == FieldKind::clock ? 1 : 0;
@@ -268,6 +285,27 @@ class FormFinder {
     throw bad_data(name_ + ":" + std::to_string(line + 1),
                    "column " + column + ": " + record::quoted(fields[*damaged]) +
                        (clock ? " is no date and time" : " is no number"));
+  }
+
+  [[nodiscard]] std::string column_words(std::size_t c) const {
+    const bool named = !form_.names.empty() && !form_.names[c].empty();
+    return "column " + (named ? form_.names[c] : std::to_string(c + 1));
+  }
+
+  /// Refuses cells of one column with two units, or with another than the header's.
+  void require_one_unit(std::size_t c) const {
+    const CellUnits& cells = form_.cell_units[c];
+    if (form_.kinds[c] != FieldKind::number || !cells.any()) return;
+    const auto refuse = [&](std::size_t line, const std::string& what) {
+      throw bad_data(name_ + ":" + std::to_string(line), column_words(c) + ": " + what, kOneUnit);
+    };
+    if (cells.odd_line() > 0) refuse(cells.odd_line(), cells.conflict(cells.odd()));
+    UnitText above;
+    if (!form_.names.empty()) above = parse_header(form_.names[c]).unit;
+    if (!above.known() && !form_.units.empty()) above = parse_unit(form_.units[c]);
+    if (above.text.empty() || above.si == "1" || same_unit(above, cells.unit())) return;
+    refuse(cells.line(), record::quoted(cells.first()) + " is in " + cells.unit().text +
+                             ", the column's name says " + above.text);
   }
 
   /// Reads LabVIEW's tags in the lines above the table: the period, the channels' units.

@@ -19,6 +19,7 @@ struct TextForm {
   std::vector<std::string> units;         ///< likewise; empty without a line of units
   std::vector<FieldKind> kinds;           ///< one per column
   std::vector<ColumnDecimals> decimals;   ///< likewise
+  std::vector<CellUnits> cell_units;      ///< likewise
   std::vector<std::vector<double>> head;  ///< first values of each column, clocks in s
   std::size_t data_offset = 0;            ///< byte at which the first row begins
   std::size_t data_line = 0;              ///< its line, from 1

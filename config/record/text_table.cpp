@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "config/record/clock_text.h"
 #include "config/record/text_fields.h"
@@ -26,11 +28,36 @@ bool is_garbled(std::string_view field) {
   return digit;
 }
 
+/// Several cells that another sign separates: "5 V;3", or that sign alone.
+bool is_several(std::string_view field, char separator) {
+  constexpr std::string_view kSeparators = ";|\t";
+  if (separator == ' ' && field.find_first_not_of(";|,") == std::string_view::npos) return true;
+  if (field.find_first_of(kSeparators) == std::string_view::npos) return false;
+  while (true) {
+    const std::size_t end = std::min(field.find_first_of(kSeparators), field.size());
+    const std::string_view part = without_unit(trimmed(field.substr(0, end)));
+    double value = 0.0;
+    if (!part.empty() && !parse_number(part, '.', value) && !parse_number(part, ',', value)) {
+      return false;
+    }
+    if (end == field.size()) return true;
+    field.remove_prefix(end + 1);
+  }
+}
+
 /// The fields of one row.
 struct Row {
-  std::vector<FieldKind> kinds;
+  std::vector<FieldKind> kinds;                ///< text for a number with a unit
+  std::vector<std::optional<UnitCell>> units;  ///< refer to `fields`
   std::vector<double> values;  ///< in the dialect's decimals; "1,234" counts as thousands there
   std::vector<std::string> fields;
+
+  [[nodiscard]] FieldKind kind(std::size_t c) const {
+    return units[c] ? FieldKind::number : kinds[c];
+  }
+  [[nodiscard]] std::string number(std::size_t c) const {
+    return units[c] ? std::string(units[c]->number) : fields[c];
+  }
 };
 
 /// Between commas a quoted number may have a comma of its own: each column says by all its numbers
@@ -46,6 +73,7 @@ bool columns_decide(const std::vector<TextLine>& lines, const TextDialect& diale
 /// True for a row. A blank sets thousands apart where it cannot be between two columns.
 bool is_row(const std::string_view line, const TextDialect& dialect, bool decides, Row& row) {
   row.kinds.clear();
+  row.units.clear();
   row.values.clear();
   if (trimmed(line).empty()) return false;
   row.fields = split_fields(line, dialect.separator);
@@ -56,18 +84,25 @@ bool is_row(const std::string_view line, const TextDialect& dialect, bool decide
   for (const std::string& field : row.fields) {
     double value = 0.0;
     FieldKind kind = kind_of(field, dialect.decimal, value);
-    if (kind == FieldKind::number && !blanks_group && field.find(' ') != std::string::npos) {
+    std::optional<UnitCell> unit;
+    if (kind == FieldKind::text) unit = unit_cell(field);
+    const std::string_view text = unit ? unit->number : std::string_view(field);
+    if (unit) kind = kind_of(text, dialect.decimal, value);
+    if (kind == FieldKind::number && !blanks_group && text.find(' ') != std::string_view::npos) {
       return false;
     }
     if (kind == FieldKind::text && decides &&
-        (parse_number(field, '.', value, LoneGroup::thousands) ||
-         parse_number(field, ',', value))) {
+        (parse_number(text, '.', value, LoneGroup::thousands) || parse_number(text, ',', value))) {
       kind = FieldKind::number;
     }
-    if (kind == FieldKind::text && is_garbled(field)) return false;
+    if (kind == FieldKind::text && (is_garbled(text) || is_several(field, dialect.separator))) {
+      return false;
+    }
     numbers += kind == FieldKind::number ? 1 : 0;
     clocks += kind == FieldKind::clock ? 1 : 0;
-    row.kinds.push_back(kind);
+    if (unit && kind != FieldKind::number) unit.reset();
+    row.kinds.push_back(unit ? FieldKind::text : kind);
+    row.units.push_back(std::move(unit));
     row.values.push_back(value);
   }
   return row.kinds.size() >= 2 && numbers >= 1 && numbers + clocks >= 2;
@@ -87,8 +122,24 @@ void decide(const std::vector<ColumnReading>& columns, TextTable& table) {
   }
 }
 
-bool alike(FieldKind a, FieldKind b) {
-  return a == b || a == FieldKind::missing || b == FieldKind::missing;
+/// True where a cell goes on with a column. A unit that one cell has and another lacks ends no
+/// table: it is refused.
+bool goes_on(FieldKind column, const CellUnits& cells, FieldKind kind, bool has_unit) {
+  if (column == FieldKind::missing || kind == FieldKind::missing) return true;
+  if (has_unit && column == FieldKind::number) return true;
+  if (kind == FieldKind::number && column == FieldKind::text) return !cells.words();
+  return column == kind;
+}
+
+/// Columns whose cells are numbers with units become columns of numbers.
+void take_units(TextTable& table) {
+  for (std::size_t c = 0; c < table.columns; ++c) {
+    if (table.kinds[c] == FieldKind::text && table.cell_units[c].any()) {
+      table.kinds[c] = FieldKind::number;
+    }
+    if (table.kinds[c] != FieldKind::text) continue;
+    std::fill(table.head[c].begin(), table.head[c].end(), std::nan(""));
+  }
 }
 
 /// The longest run of rows in one dialect.
@@ -104,6 +155,7 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
         decide(readings, now);
         now.rows = std::min(now.rows, kHeadRows);  // as many as other dialects count
       }
+      take_units(now);
       best = now;
     }
     now = {};
@@ -111,10 +163,11 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
   const auto fits = [&] {
     if (fields.kinds.size() != now.columns) return false;
     for (std::size_t c = 0; c < now.columns; ++c) {
-      if (!alike(fields.kinds[c], now.kinds[c])) return false;
+      const bool has_unit = fields.units[c].has_value();
+      if (!goes_on(now.kinds[c], now.cell_units[c], fields.kinds[c], has_unit)) return false;
     }
     for (std::size_t c = 0; decides && c < now.columns; ++c) {
-      if (!readings[c].allows(fields.fields[c], fields.kinds[c])) return false;
+      if (!readings[c].allows(fields.number(c), fields.kind(c))) return false;
     }
     return true;
   };
@@ -129,12 +182,20 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
       now.kinds = fields.kinds;
       now.head.assign(now.columns, {});
       now.decimals.assign(now.columns, {dialect.decimal, LoneGroup::refused, ""});
+      now.cell_units.assign(now.columns, {});
       readings.assign(now.columns, {});
     }
     ++now.rows;
     for (std::size_t c = 0; c < fields.kinds.size(); ++c) {
-      if (decides) readings[c].take(fields.fields[c], fields.kinds[c]);
-      if (now.kinds[c] == FieldKind::missing) now.kinds[c] = fields.kinds[c];
+      if (decides) readings[c].take(fields.number(c), fields.kind(c));
+      const FieldKind kind = fields.kinds[c];
+      const bool bare_behind_unit = now.kinds[c] == FieldKind::text && kind == FieldKind::number;
+      if (now.kinds[c] == FieldKind::missing || bare_behind_unit) now.kinds[c] = kind;
+      if (fields.kind(c) == FieldKind::number) {
+        now.cell_units[c].take_number(fields.fields[c], fields.units[c], i + 1);
+      } else if (kind == FieldKind::text) {
+        now.cell_units[c].take_word(fields.fields[c], i + 1);
+      }
       if (now.head[c].size() < kHeadRows) now.head[c].push_back(fields.values[c]);
     }
     if (!decides && now.rows >= kHeadRows && now.rows > 2 * best.rows) break;  // the table
@@ -175,10 +236,10 @@ NearRow near_row(const std::vector<TextLine>& lines, const std::vector<TextDiale
       bool words = false;
       for (const std::string& field : split_fields(lines[i].text, dialect.separator)) {
         double value = 0.0;
-        const FieldKind kind = kind_of(field, dialect.decimal, value);
+        const FieldKind kind = cell_kind(field, dialect.decimal, value);
         now.numbers += kind == FieldKind::number ? 1 : 0;
         if (kind != FieldKind::text) continue;
-        words = words || !is_garbled(field) || !now.field.empty();
+        words = words || !is_garbled(without_unit(field)) || !now.field.empty();
         now.field = field;
       }
       if (!words && !now.field.empty() && now.numbers > best.numbers) best = now;
@@ -196,7 +257,8 @@ NearRow near_row(const std::vector<TextLine>& lines, const std::vector<TextDiale
   const NearRow near = near_row(lines, dialects);
   if (near.numbers > 0) {
     double value = 0.0;
-    const bool two = parse_number(near.field, near.dialect.decimal, value, LoneGroup::thousands);
+    const bool two =
+        parse_number(without_unit(near.field), near.dialect.decimal, value, LoneGroup::thousands);
     throw bad_data(name + ":" + std::to_string(near.line + 1),
                    "'" + near.field + "' " + (two ? "has two readings" : "is no number") +
                        " where " + words(near.dialect) + " are written",
@@ -235,6 +297,14 @@ FieldKind kind_of(std::string_view field, char decimal, double& value) {
   if (parse_number(field, decimal, value)) return FieldKind::number;
   if (parse_clock(field, value)) return FieldKind::clock;
   return FieldKind::text;
+}
+
+FieldKind cell_kind(std::string_view field, char decimal, double& value) {
+  const FieldKind kind = kind_of(field, decimal, value);
+  if (kind != FieldKind::text) return kind;
+  const std::optional<UnitCell> cell = unit_cell(field);
+  const bool number = cell && parse_number(cell->number, decimal, value);
+  return number ? FieldKind::number : FieldKind::text;
 }
 
 TextTable find_table(const std::vector<TextLine>& lines, const std::string& name) {

@@ -9,6 +9,7 @@
 
 #include "config/record/column_decimals.h"
 #include "config/record/text_fields.h"
+#include "config/record/unit_cells.h"
 
 namespace config::record {
 
@@ -25,6 +26,8 @@ struct TextDialect {
 
 /// The kind of a field without blanks around, and its number or time in s; NaN: none.
 [[nodiscard]] FieldKind kind_of(std::string_view field, char decimal, double& value);
+/// The same, a number with a unit behind it being one too.
+[[nodiscard]] FieldKind cell_kind(std::string_view field, char decimal, double& value);
 
 struct TextLine {
   std::string_view text;  ///< without its end
@@ -40,6 +43,7 @@ struct TextTable {
   std::vector<FieldKind> kinds;
   std::vector<std::vector<double>> head;  ///< first values of each column
   std::vector<ColumnDecimals> decimals;   ///< one per column
+  std::vector<CellUnits> cell_units;      ///< likewise; of a column of numbers
 };
 
 /// Throws schema::DataError where there is none, or where the lines can be read in two ways.

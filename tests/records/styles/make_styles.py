@@ -445,6 +445,39 @@ def bad_groups_of_two_digits():
             refused(":2:", "is no number"))
 
 
+# --- units in the cells --------------------------------------------------------------------------
+
+def with_units(columns, units):
+    return [[value + unit for value in column] for column, unit in zip(columns, units)]
+
+
+@style()
+def units_in_every_cell():
+    u = grouped([10 * v for v in U_V], 3)
+    return ("Time,Valve command,Position\n" + between(with_units([T_POINT, u, grouped(Y_MM, 3)], ["s", " %", " mm"])),
+            truth(u=[round(10 * v, 3) for v in U_V], units=("pct", "m"), tolerance=1e-6))
+
+
+@style()
+def units_in_every_cell_with_decimal_commas():
+    y = grouped(Y_UM, 1, ".", ",")
+    return ("Zeit;Ventil;Weg\n" + between(with_units([T_COMMA, U_COMMA, y], ["\u202fs", "\u202fV", " µm"]), ";"),
+            truth(**in_um(1)))
+
+
+@style()
+def units_in_quoted_cells():
+    columns = with_units([T_COMMA, U_COMMA, grouped(Y_MM, 3, "", ",")], [" s", " V", " mm"])
+    return ("Time,Command,Position\n" + between([quoted(c) for c in columns]), truth(tolerance=1e-6))
+
+
+@style()
+def bad_units_of_an_autoranging_meter():
+    y = ["%.3f mm" % v if v > 280 else "%.4f cm" % (0.1 * v) for v in Y_MM]
+    return ("Time [s],Command [V],Position\n" + rows([T, U_V, y]),
+            refused("is in cm, the cells before are in mm", "column Position"))
+
+
 # --- mappings ------------------------------------------------------------------------------------
 
 @style()
