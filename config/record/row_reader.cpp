@@ -17,7 +17,7 @@ using schema::bad_data;
 std::size_t decimals(std::string_view number, char decimal) {
   const std::size_t exponent = number.find_first_of("eE");
   if (exponent != std::string_view::npos) {
-    const std::size_t digits = number.find_first_not_of("eE+-", exponent);
+    const std::size_t digits = number.find_first_of("0123456789", exponent);
     if (digits == std::string_view::npos || number.size() - digits < 2) return 0;
     number = number.substr(0, exponent);
   }

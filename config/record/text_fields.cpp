@@ -8,6 +8,24 @@
 
 namespace config::record {
 
+namespace {
+
+constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as word processors write it
+
+/// With "-" for that sign, at the front and in the exponent.
+std::string with_plain_minus(std::string_view field) {
+  std::string plain;
+  while (!field.empty()) {
+    const bool sign = plain.empty() || plain.back() == 'e' || plain.back() == 'E';
+    const bool minus = sign && field.starts_with(kMinus);
+    plain += minus ? '-' : field.front();
+    field.remove_prefix(minus ? kMinus.size() : 1);
+  }
+  return plain;
+}
+
+}  // namespace
+
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -54,6 +72,8 @@ std::vector<std::string> split_fields(std::string_view line, char separator) {
 bool is_missing(std::string_view field) {
   if (field.empty()) return true;
   if (field.size() > 9 || is_digit(field.front())) return field == "1.#QNAN" || field == "1.#IND";
+  // A lone minus sign or dash, as word processors write it.
+  if (field == kMinus || field == "\xE2\x80\x93" || field == "\xE2\x80\x94") return true;
   const std::string word = lower(field);
   for (const std::string_view missing :
        {"nan",  "-nan", "+nan", "nan(ind)", "-nan(ind)", "na",      "n/a",
@@ -120,10 +140,9 @@ bool ungroup(std::string_view field, char decimal, LoneGroup lone, std::array<ch
 }  // namespace
 
 bool parse_number(std::string_view field, char decimal, double& value, LoneGroup lone) {
-  constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as word processors write it
-  if (field.starts_with(kMinus)) {
-    field.remove_prefix(kMinus.size());
-    return parse_number("-" + std::string(field), decimal, value, lone);
+  if (field.find(kMinus) != std::string_view::npos) {
+    const std::string plain = with_plain_minus(field);
+    return plain.size() < field.size() && parse_number(plain, decimal, value, lone);
   }
   if (field.starts_with('+')) field.remove_prefix(1);
   if (field.empty() || !(is_digit(field.front()) || field.front() == '-' || field.front() == '.' ||

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -199,6 +200,26 @@ TEST(Csv, TakesRowsWithoutANumberForGaps) {
   EXPECT_THAT(record.notes,
               ElementsAre("4 rows without a number in time, command or position are left out"));
   expect_bad("t_s,u_V,y_m\n0,1,\n0.005,1,\n0.01,1,\n", "", "y_m holds no number");
+}
+
+TEST(Csv, TakesALoneMinusSignForAGap) {
+  for (const char* gap : {"\u2212", "\u2013", "\u2014", "-", "--", "n/a"}) {
+    for (const char separator : {',', ';', '\t'}) {
+      std::string text = "Time [s],Command [V],Position [m],Force [N]\n";
+      for (int i = 0; i < 60; ++i) {
+        const std::string cell = i % 20 == 10 ? gap : "1.5e\u22123";
+        text += std::to_string(i * 0.005) + "," + cell + ",\u22120.5," + gap + "\n";
+      }
+      std::replace(text.begin(), text.end(), ',', separator);
+      const Record record = read(text);
+      EXPECT_EQ(record.size(), 57U) << gap;
+      EXPECT_EQ(record.gaps.size(), 3U) << gap;
+      EXPECT_DOUBLE_EQ(record.u_V.front(), 1.5e-3);
+      EXPECT_DOUBLE_EQ(record.y_m.front(), -0.5);
+    }
+  }
+  expect_bad("t_s,u_V,y_m\n0,1,1.5e\u221205\n0.1,2,1.5e\u221205\n0.2,2,1.5e\u22120", ":4",
+             "is cut off");
 }
 
 TEST(Csv, RefusesTimesThatDoNotGoOnEvenly) {

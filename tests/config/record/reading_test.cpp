@@ -73,6 +73,10 @@ TEST(Numbers, AreReadByTheirDecimalSignOrNotAtAll) {
   EXPECT_FALSE(parse_number("1,5", '.', value));
   EXPECT_TRUE(parse_number("\u22121,5", ',', value));  // minus sign
   EXPECT_DOUBLE_EQ(value, -1.5);
+  EXPECT_TRUE(parse_number("\u22121,5e\u22123", ',', value));
+  EXPECT_DOUBLE_EQ(value, -1.5e-3);
+  EXPECT_FALSE(parse_number("1\u22123", '.', value));
+  EXPECT_FALSE(parse_number("\u2212\u22121", '.', value));
   EXPECT_TRUE(parse_number("+1.5e-3", '.', value));
   EXPECT_EQ(value, 1.5e-3);
 }
