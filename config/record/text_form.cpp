@@ -4,6 +4,7 @@
 #include <cctype>
 #include <optional>
 
+#include "config/record/damaged_row.h"
 #include "config/record/layout.h"
 #include "config/record/text_fields.h"
 #include "config/record/unit_text.h"
@@ -263,21 +264,13 @@ class FormFinder {
     form_.header_line = header->line + 1;
   }
 
-  /// Refuses a line above the table that begins with a number and is mostly numbers: one field
-  /// keeps it from being a row. `header`: the line of names, where it is another.
+  /// Refuses a line above the table that damaged fields keep from being a row. `header`: the line
+  /// of names, where it is another.
   void require_no_row(std::size_t line, const std::vector<std::string>& fields,
                       const Candidate* header) const {
-    std::size_t numbers = 0;
-    std::optional<std::size_t> damaged;
-    for (std::size_t c = 0; c < fields.size(); ++c) {
-      if (form_.kinds[c] != FieldKind::number && form_.kinds[c] != FieldKind::clock) continue;
-      double value = 0.0;
-      const FieldKind kind = cell_kind(fields[c], form_.dialect.decimal, value);
-      if (kind == FieldKind::text && numbers == 0) return;
-      if (kind == FieldKind::text && !damaged) damaged = c;
-      numbers += kind == FieldKind::number || kind == FieldKind::clock ? 1 : 0;
-    }
-    if (!damaged || 2 * numbers <= fields.size()) return;
+    const RowsBelow rows{form_.dialect.decimal, form_.kinds, form_.head, header != nullptr};
+    const std::optional<std::size_t> damaged = damaged_field(fields, rows);
+    if (!damaged) return;
     const bool named = header != nullptr && !header->names[*damaged].empty();
     const std::string column =
         named ? clean_text(header->names[*damaged]) : std::to_string(*damaged + 1);

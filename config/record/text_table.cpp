@@ -55,6 +55,10 @@ struct Row {
   [[nodiscard]] FieldKind kind(std::size_t c) const {
     return units[c] ? FieldKind::number : kinds[c];
   }
+  [[nodiscard]] std::size_t with_unit() const {
+    return static_cast<std::size_t>(std::count_if(
+        units.begin(), units.end(), [](const auto& unit) { return unit.has_value(); }));
+  }
   [[nodiscard]] std::string number(std::size_t c) const {
     return units[c] ? std::string(units[c]->number) : fields[c];
   }
@@ -160,8 +164,10 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
     }
     now = {};
   };
+  bool named_as_units = false;
   const auto fits = [&] {
     if (fields.kinds.size() != now.columns) return false;
+    if (now.rows == 1 && named_as_units && fields.with_unit() == 0) return false;  // "5V;12V"
     for (std::size_t c = 0; c < now.columns; ++c) {
       const bool has_unit = fields.units[c].has_value();
       if (!goes_on(now.kinds[c], now.cell_units[c], fields.kinds[c], has_unit)) return false;
@@ -179,6 +185,7 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
       now.dialect = dialect;
       now.first = i;
       now.columns = fields.kinds.size();
+      named_as_units = fields.with_unit() == now.columns;
       now.kinds = fields.kinds;
       now.head.assign(now.columns, {});
       now.decimals.assign(now.columns, {dialect.decimal, LoneGroup::refused, ""});

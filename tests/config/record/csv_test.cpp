@@ -119,6 +119,50 @@ TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
   EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
 }
 
+TEST(Csv, RefusesADamagedFirstRowOfTwoColumns) {
+  const auto read_command = [](const std::string& content, const char* map = "") {
+    ReadOptions options;
+    options.position_optional = true;
+    options.map = map;
+    return read_record(TemporaryFile(content).path(), options);
+  };
+  const auto refused = [&](const std::string& content, const std::string& what,
+                           const char* map = "") {
+    try {
+      (void)read_command(content, map);
+      ADD_FAILURE() << "accepted: " << content;
+    } catch (const schema::DataError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  const std::string names = "Time [s],Command [V]\n";
+  const std::string rows = "0.005,2\n0.010,3\n0.015,3\n";
+  const char* by_number = "t=1[s],u=2[V]";
+  for (const char* field : {"error", "1.x5", "***", "word"}) {
+    const std::string what = "'" + std::string(field) + "' is no number";
+    refused(names + "0," + field + "\n" + rows, ":2: column Command [V]: " + what);
+    refused(std::string("0,") + field + "\n" + rows, ":1: column 2: " + what, by_number);
+    if (std::string(field) == "word") continue;  // begins a line of words, too
+    refused(names + field + ",2\n" + rows, ":2: column Time [s]: " + what);
+    refused(field + std::string(",2\n") + rows, ":1: column 1: " + what, by_number);
+    expect_bad("Time [s],Command [V],Position [mm]\n" + std::string(field) + ",1,2\n" + kRows, ":2",
+               "column Time [s]: " + what);
+  }
+  // command and position, without times
+  const std::string pairs = "Command [V],Position [mm]\n";
+  const std::string values = "1.6,2\n1.5,3\n1.7,3\n";
+  refused(pairs + "1.5,error\n" + values, ":2: column Position [mm]: 'error' is no number",
+          "t=200Hz");
+  refused(pairs + "1.5.5,2\n" + values, ":2: column Command [V]: '1.5.5' is no number", "t=200Hz");
+  // lines of names, units, scales, counts and dates are none
+  for (const char* header :
+       {"x-axis,A\nsecond,Volt\n", "Time [s],Command [V]\nScale,0.001\n", "Samples,500\n",
+        "Sample Interval,0.005\nTIME,CH1\n", "01.05.2024,12\n", "2024-05-01,12\n", "X,CH1\n1st,2\n",
+        "Model,MDO3024\nVertical Units,V\nTIME,2B\n", "time,A\n", "5V,12V\n", "10:11:12,5\n"}) {
+    EXPECT_EQ(read_command(header + rows, by_number).size(), 3U) << header;
+  }
+}
+
 TEST(Csv, ReadsUnitsThatStandInTheCells) {
   const Record glued = read(
       "Time,Valve,Position,Phase\n0.0s,12.5%,3.2mm,1A\n0.1s,-12.5%,3.3mm,1B\n0.2s,0%,3.4mm,1C\n");
