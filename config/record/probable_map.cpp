@@ -3,33 +3,56 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <set>
+#include <string_view>
+
+#include "config/record/map_terms.h"
+#include "config/record/text_fields.h"
+#include "config/schema/error.h"
 
 namespace config::record {
 namespace {
 
-/// How a column is named on the command line: its name, or its number where that needs quoting.
+/// Needs no quoting within a mapping: a word, or a number that is a name.
+bool is_plain_name(const std::string& text) {
+  if (text.empty()) return false;
+  if (is_digit(text.front())) return std::all_of(text.begin(), text.end(), is_digit);
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == ' ' || c == '.';
+  });
+}
+
+/// Means itself in a mapping between apostrophes: "x-axis".
+bool is_typeable(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return c >= ' ' && std::string_view("'\"[]=@,").find(c) == std::string_view::npos;
+  });
+}
+
+/// How a column is named on the command line: its name, or its number where that needs quoting. A
+/// number that is the name of another column stands for that one.
 std::string typed(const std::vector<ReadColumn>& columns, std::size_t i) {
-  if (!columns[i].named) return std::to_string(i + 1);
-  const auto plain = [](const std::string& text) {
-    return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
-           std::all_of(text.begin(), text.end(), [](char c) {
-             return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == ' ' ||
-                    c == '.';
-           });
+  const auto means_it = [&](const std::string& text) {
+    try {
+      return column_named(columns, "", text) == i;
+    } catch (const schema::DataError&) {
+      return false;  // several
+    }
   };
-  const auto only = [&](const std::string& text) {
-    return std::count_if(columns.begin(), columns.end(), [&](const ReadColumn& column) {
-             return folded(column.header) == folded(text) ||
-                    folded(column.text.name) == folded(text);
-           }) == 1;
-  };
-  for (const std::string& text : {columns[i].header, columns[i].text.name}) {
-    if (plain(text) && only(text)) return text;
+  std::string number = std::to_string(i + 1);
+  if (!columns[i].named) return number;
+  const std::array<std::string, 2> names{columns[i].header, columns[i].text.name};
+  for (const std::string& name : names) {
+    if (is_plain_name(name) && means_it(name)) return name;
   }
-  return std::to_string(i + 1);
+  if (means_it(number)) return number;
+  for (const std::string& name : names) {
+    if (is_typeable(name) && means_it(name)) return name;
+  }
+  return number;
 }
 
 std::string probable_unit(Role role, const ReadColumn& column) {

@@ -181,6 +181,20 @@ TEST(Roles, SayEverythingThatIsWrongInOneLineWithTheMappingToType) {
                                "'t=time[s],u=voltage[V],y=pos[mm]'"));
 }
 
+TEST(Roles, ProposeAMappingThatReadsColumnsWhoseNamesAreNumbers) {
+  // as oscilloscopes of Keysight write them
+  const std::string text = "x-axis,1,2\nsecond,Volt,Volt\n-1e-3,1,4\n0,2,5\n1e-3,3,6\n";
+  const std::string error = error_of(text);
+  const std::string begin = "--map '";
+  const std::size_t at = error.find(begin) + begin.size();
+  const std::string map = error.substr(at, error.find('\'', at) - at);
+  EXPECT_EQ(map, "t=x-axis,u=1,y=2[Volt]");
+  const Record record = read(text, map);
+  EXPECT_THAT(record.t_s, ElementsAre(-1e-3, 0.0, 1e-3));
+  EXPECT_THAT(record.u_V, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(record.y_m, ElementsAre(4.0, 5.0, 6.0));
+}
+
 TEST(Roles, TakeNoReferenceForAPositionAndNoPositionForACommand) {
   const Record record =
       read("Time [s],Position command [mm],Command [V],Position [mm]\n0,1,2,3\n1,1,2,3\n2,1,2,3\n");

@@ -655,6 +655,18 @@ def oscilloscope_with_a_mapping():
 
 
 @style()
+def keysight_oscilloscope():
+    return ("x-axis,1,2\nsecond,Volt,Volt\n" + rows([T, U_V, [y / 20 for y in Y_MM]]),
+            truth(arguments=["--map", "t=x-axis,u=1,y=2*20[mm]"], tolerance=1e-8))
+
+
+@style()
+def bad_keysight_oscilloscope_without_a_mapping():
+    return ("x-axis,1,2\nsecond,Volt,Volt\n" + rows([T, U_V, [y / 20 for y in Y_MM]]),
+            refused("lacks a command", "--map 't=x-axis,u=1,y=2[Volt]'"))
+
+
+@style()
 def time_of_day_with_am_and_pm():
     text = ["%s PM" % clock(t, begin=36720.0) for t in T]
     return "Time,Command (V),Position (mm)\n" + rows([text, U_V, Y_MM]), truth(tolerance=1e-6)
