@@ -1,10 +1,10 @@
 #include "config/record/whole_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <string>
 
 #include "config/schema/error.h"
@@ -13,13 +13,36 @@ namespace config::record {
 
 namespace {
 
-void write_to(const std::filesystem::path& file, std::string_view text, int& error) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  error = out ? 0 : errno;
-  if (!out && error == 0) error = EIO;
+/// Zero, or the error of a file system that can sync.
+int sync_error(int file) { return fsync(file) != 0 && errno != EINVAL ? errno : 0; }
+
+/// Writes `text` and, to a regular file, until it is on the disk. Zero, or the error.
+int write_to(const std::filesystem::path& file, std::string_view text, bool special) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+  const int out = open(file.c_str(), special ? kFlags : kFlags | O_NOFOLLOW, 0666);
+  if (out < 0) return errno;
+  int error = 0;
+  while (error == 0 && !text.empty()) {
+    const ssize_t written = write(out, text.data(), text.size());
+    if (written >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      error = errno;
+    }
+  }
+  if (error == 0 && !special) error = sync_error(out);
+  if (close(out) != 0 && error == 0) error = errno;
+  return error;
+}
+
+/// Until the name of a renamed file is on the disk. Zero, or the error.
+int sync_folder(const std::filesystem::path& folder) {
+  const int opened =
+      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return errno == EACCES ? 0 : errno;  // files may be made in it, not listed
+  const int error = sync_error(opened);
+  close(opened);
+  return error;
 }
 
 /// A device or a pipe (/dev/stdout, /dev/null): nothing may be put in its place.
@@ -36,8 +59,7 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
   const bool special = is_special(file);
   std::filesystem::path temporary = file;
   if (!special) temporary += ".part" + std::to_string(getpid());
-  int error = 0;
-  write_to(temporary, text, error);
+  const int error = write_to(temporary, text, special);
   std::error_code renamed;
   if (error == 0 && !special) std::filesystem::rename(temporary, file, renamed);
   if (error != 0 || renamed) {
@@ -45,6 +67,12 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
     std::error_code ignored;
     if (!special) std::filesystem::remove(temporary, ignored);
     throw schema::RunError(file.string() + ": cannot be written: " + why);
+  }
+  if (special) return;
+  if (const int unsynced = sync_folder(file.parent_path()); unsynced != 0) {
+    throw schema::RunError(file.string() +
+                           ": is written, but its folder cannot be: " + std::strerror(unsynced) +
+                           "; a loss of power may bring back the file before");
   }
 }
 

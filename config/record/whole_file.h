@@ -6,8 +6,8 @@
 
 namespace config::record {
 
-/// Writes `text` under a temporary name beside `file` and renames it; a device or a pipe is written
-/// to as it is. Throws schema::RunError.
+/// Writes `text` under a temporary name beside `file` and renames it; file and name are on the disk
+/// when it returns. A device or a pipe is written to as it is. Throws schema::RunError.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace config::record

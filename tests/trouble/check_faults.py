@@ -15,6 +15,11 @@ import sys
 import tempfile
 
 
+def timeless(text):
+    """Reports name the minute at which they were made."""
+    return re.sub(rb"20\d\d-\d\d-\d\d \d\d:\d\d", b"", text)
+
+
 class Tries:
     def __init__(self, programs, library):
         self.programs, self.library = programs, library
@@ -66,7 +71,8 @@ class Tries:
         self.check(f"{file.name} written", good.returncode == 0, good)
         whole = file.read_bytes()
         for fault in (*(f"{kind}:{file.name}:{at}" for kind in ("write_enospc", "write_eio")
-                        for at in (0, len(whole) // 2)), f"rename_eio:{file.name}:0"):
+                        for at in (0, len(whole) // 2)), f"sync_eio:{file.name}:0",
+                      f"rename_eio:{file.name}:0"):
             file.unlink()
             bad = self.run(command, fault)
             left = [p for p in file.parent.iterdir() if p.name.startswith(file.name)]
@@ -91,14 +97,20 @@ class Tries:
                 self.check(f"{file.name}: {kind} at byte {at}",
                            bad.returncode == 1 and file.read_bytes() == b"what was there"
                            and not left, bad)
-        file.write_bytes(b"what was there")
-        bad = self.run(command, f"rename_eio:{file.name}:0")
-        self.check(f"{file.name}: cannot take its place",
-                   bad.returncode == 1 and file.read_bytes() == b"what was there"
-                   and not [p for p in file.parent.iterdir() if p.name.startswith(file.name) and p != file], bad)
+        for kind in ("sync_eio", "rename_eio"):
+            file.write_bytes(b"what was there")
+            bad = self.run(command, f"{kind}:{file.name}:0")
+            left = [p for p in file.parent.iterdir() if p.name.startswith(file.name) and p != file]
+            self.check(f"{file.name}: {kind}, cannot take its place",
+                       bad.returncode == 1 and file.read_bytes() == b"what was there" and not left, bad)
+        # The name is not on the disk: the file is there, and the command says so.
+        bad = self.run(command, f"sync_folder_eio:{file.parent.name}:0")
+        self.check(f"{file.name}: its folder is not synced",
+                   bad.returncode == 1 and timeless(file.read_bytes()) == timeless(whole)
+                   and "Input/output error" in bad.stderr, bad)
         short = self.run(command, f"write_short:{file.name}:0")
         self.check(f"{file.name}: seven bytes at a time",
-                   short.returncode == 0 and file.read_bytes() == whole, short)
+                   short.returncode == 0 and timeless(file.read_bytes()) == timeless(whole), short)
 
 
 def main():

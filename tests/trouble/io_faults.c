@@ -4,7 +4,7 @@
  *
  * KIND: read_eio, read_short (at most seven bytes at a time), read_shrunk (the file is cut off there
  * when it has been read so far), write_enospc, write_eio, write_short; sync_eio (fsync and fdatasync),
- * rename_eio (onto such a path).
+ * sync_folder_eio (the same of folders alone), rename_eio (onto such a path).
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -111,7 +112,10 @@ ssize_t writev(int file, const struct iovec* parts, int count) {
 }
 
 static int synced(int file, const char* name) {
-  if (at >= 0 && strcmp(kind, "sync_eio") == 0 && is_it(file)) {
+  struct stat found;
+  const int folder = fstat(file, &found) == 0 && S_ISDIR(found.st_mode);
+  const int wrong = strcmp(kind, "sync_eio") == 0 || (folder && strcmp(kind, "sync_folder_eio") == 0);
+  if (at >= 0 && wrong && is_it(file)) {
     errno = EIO;
     return -1;
   }
