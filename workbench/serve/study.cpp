@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
@@ -23,10 +21,7 @@ namespace workbench::serve {
 namespace {
 
 using config::schema::UsageError;
-using nlohmann::ordered_json;
 
-constexpr const char* kSession = "session.json";
-constexpr const char* kScript = "commands.sh";
 constexpr std::size_t kMostIgnored = 100;
 /// Split of the record that a fit scores itself on.
 constexpr const char* kSplit = "blocks";
@@ -73,23 +68,9 @@ class MadeFile {
 }  // namespace
 
 Study::Study(const SessionFolder& folder) : folder_(folder) {
-  std::ifstream in(folder_.path_of(kSession));
-  const ordered_json session = ordered_json::parse(in, nullptr, false);
-  if (!session.is_object()) return;
-  const auto text = [&](const char* key) {
-    const auto found = session.find(key);
-    return found != session.end() && found->is_string() ? found->get<std::string>() : "";
-  };
-  open_.lineage = lineage_of(session);
-  Open next = open_;
-  next.record = text("record");
-  next.model = text("model");
-  next.trial = text("trial");
-  if (const auto spans = session.find("ignored"); spans != session.end() && spans->is_array()) {
-    for (const ordered_json& span : *spans) {
-      if (span.is_string()) next.ignored.push_back(span.get<std::string>());
-    }
-  }
+  Open next;
+  static_cast<SavedSession&>(next) = load_session(folder);
+  open_.lineage = next.lineage;
   try {
     show(std::move(next), false);  // a full disk keeps nobody from looking
   } catch (const config::schema::Error&) {
@@ -152,7 +133,7 @@ void Study::show(Open next, bool saves) {
   }
   note_errors(next, next.model, accepted);
   note_errors(next, next.trial, tried);
-  if (saves) save(next);
+  if (saves) save_session(folder_, next);
   open_ = std::move(next);
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
@@ -306,7 +287,7 @@ std::string Study::write_report() {
   next.lineage.remember(command);
   MadeFile made(folder_.path_of(file));
   present::write_report(compare::make_report(shown.comparison, command), folder_.path_of(file));
-  save(next);
+  save_session(folder_, next);
   open_ = std::move(next);
   made.keep();
   return file;
@@ -371,23 +352,6 @@ diagnose::DiagnosisRequest Study::diagnosis_request(const std::vector<std::strin
   words.insert(words.end(), {"-o", file});
   request.command = command_of(words);
   return request;
-}
-
-void Study::save(const Open& open) const {
-  ordered_json session{{"record", open.record},
-                       {"model", open.model},
-                       {"trial", open.trial},
-                       {"ignored", open.ignored}};
-  session.update(to_json(open.lineage));
-  config::record::write_whole(
-      folder_.path_of(kSession),
-      session.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
-  try {
-    config::record::write_whole(folder_.path_of(kScript), script_of(open.lineage));
-  } catch (const config::schema::Error& error) {
-    // The session is saved, and the next change writes the whole script.
-    std::cerr << "spoolwatch serve: " << error.what() << '\n';
-  }
 }
 
 std::string Study::curves(const View& view) const {

@@ -17,6 +17,7 @@
 #include "workbench/fit/request.h"
 #include "workbench/model/kinds.h"
 #include "workbench/serve/lineage.h"
+#include "workbench/serve/session_file.h"
 #include "workbench/serve/session_folder.h"
 
 namespace workbench::serve {
@@ -84,12 +85,9 @@ class Study {
   [[nodiscard]] std::string preview(const ParameterValues& values, const View& view) const;
 
  private:
-  /// The session, as it is saved, and what follows from its files alone.
-  struct Open {
-    std::string record, model, trial;
-    std::string beside;  ///< not saved
-    std::vector<std::string> ignored;
-    Lineage lineage;
+  /// The session, what is beside it without being saved, and what follows from its files alone.
+  struct Open : SavedSession {
+    std::string beside;
     std::optional<plant_sim::ModelFile> shown;  ///< the trial, or else the model
     bool live_rotary = false;                   ///< the axis of `model` turns
   };
@@ -117,7 +115,6 @@ class Study {
   [[nodiscard]] nlohmann::ordered_json side_by_side() const;
   /// `changed`: the curves of a model with other values, alone; null: everything.
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
-  void save(const Open& open) const;
 
   const SessionFolder& folder_;
   Open open_;
