@@ -16,8 +16,14 @@ struct SavedSession {
   Lineage lineage;
 };
 
-/// Empty where there is none.
-[[nodiscard]] SavedSession load_session(const SessionFolder& folder);
+struct LoadedSession {
+  SavedSession session;  ///< empty where there is none
+  std::string notice;    ///< why it is not the saved one, and where that is kept; empty: it is
+};
+
+/// A session.json that cannot be read is set aside under another name, with commands.sh, so that
+/// no change overwrites them. Throws config::schema::RunError where that fails.
+[[nodiscard]] LoadedSession load_session(const SessionFolder& folder);
 
 /// Throws config::schema::RunError where session.json cannot be written; a script that cannot is
 /// named on standard error.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
@@ -68,14 +69,18 @@ class MadeFile {
 }  // namespace
 
 Study::Study(const SessionFolder& folder) : folder_(folder) {
+  LoadedSession loaded = load_session(folder);
+  notice_ = std::move(loaded.notice);
   Open next;
-  static_cast<SavedSession&>(next) = load_session(folder);
+  static_cast<SavedSession&>(next) = std::move(loaded.session);
   open_.lineage = next.lineage;
   try {
     show(std::move(next), false);  // a full disk keeps nobody from looking
-  } catch (const config::schema::Error&) {
-    // Files were renamed or changed meanwhile: the session begins without them.
+  } catch (const config::schema::Error& error) {
+    // Files were renamed or changed meanwhile.
+    notice_ = std::string("the session begins without its record and model: ") + error.what();
   }
+  if (!notice_.empty()) std::cerr << "spoolwatch serve: " << notice_ << '\n';
 }
 
 compare::CompareRequest Study::request_of(const std::string& model) const {

@@ -37,7 +37,8 @@ using ParameterValues = std::map<std::string, double>;
 
 class Study {
  public:
-  /// Continues the session of the folder, where there is one.
+  /// Continues the session of the folder, where there is one; says on standard error and in state()
+  /// why it does not. Throws config::schema::RunError where it would overwrite one.
   explicit Study(const SessionFolder& folder);
 
   // Each throws config::schema::Error, or another std::exception for want of memory; the session
@@ -117,6 +118,7 @@ class Study {
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
 
   const SessionFolder& folder_;
+  std::string notice_;  ///< why the session is not the saved one; empty: it is
   Open open_;
   std::optional<Shown> accepted_, tried_, beside_;
 };

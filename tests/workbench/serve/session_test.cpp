@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 #include "tests/workbench/serve/study_page.h"
 #include "workbench/serve/study.h"
 
@@ -16,8 +17,48 @@ TEST_F(StudyPage, ASessionGoesOnWhereItEnded) {
   EXPECT_EQ(state["record"], "multisine.csv");
   EXPECT_EQ(state["model"], "thesis.toml");
   EXPECT_THAT(state["ignored"], testing::ElementsAre("3:5"));
-  page.put("session.json", "{\"nodes\": [1, {\"model\": 3}], \"record\": []}");
+  EXPECT_EQ(state["notice"], "");
+  page.put("session.json", "{\"nodes\": [1, {\"model\": 3}]}");
   EXPECT_EQ(Study(folder).state()["record"], "");
+}
+
+TEST_F(StudyPage, ASessionThatCannotBeReadIsKeptAndSaid) {
+  const SessionFolder folder(page.session);
+  const auto text_of = [&](const std::string& name) {
+    return config::schema::read_file(page.session / name, config::schema::kMiB).text;
+  };
+  const auto begun_anew = [&](const std::string& why, const std::string& kept) {
+    Study study(folder);
+    const std::string notice = study.state()["notice"];
+    EXPECT_THAT(notice, testing::HasSubstr("session.json: " + why)) << notice;
+    EXPECT_THAT(notice, testing::HasSubstr("kept as " + kept));
+    EXPECT_EQ(study.state()["record"], "");
+    study.open_record("multisine.csv");
+    EXPECT_EQ(Study(folder).state()["notice"], "") << "the next one goes on";
+  };
+  page.put("commands.sh", "#!/bin/sh\nspoolwatch fit\n");
+  std::string number;
+  for (const std::string& damaged :
+       {std::string("{\"record\": \"multi"), std::string(), std::string("[1]"),
+        std::string("{\"record\": []}"), std::string("{\"nodes\": {}}")}) {
+    page.put("session.json", damaged);
+    const std::string why = damaged.starts_with("[")                     ? "is no JSON object"
+                            : damaged.find("[]") != std::string::npos    ? "record is no text"
+                            : damaged.find("nodes") != std::string::npos ? "nodes is no list"
+                                                                         : "is no JSON";
+    const std::string kept = "session-damaged" + number + ".json";
+    begun_anew(why, kept);
+    EXPECT_EQ(text_of(kept), damaged);
+    number = number.empty() ? "-2" : "-" + std::to_string(std::stoi(number.substr(1)) + 1);
+  }
+  EXPECT_EQ(text_of("commands-before.sh"), "#!/bin/sh\nspoolwatch fit\n");
+  std::filesystem::remove(page.session / "session.json");
+  std::filesystem::create_directory(page.session / "session.json");
+  begun_anew("cannot be read", "session-damaged" + number + ".json");
+
+  // its files are gone
+  page.put("session.json", "{\"record\": \"gone.csv\", \"model\": \"thesis.toml\"}");
+  EXPECT_THAT(Study(folder).state()["notice"].get<std::string>(), testing::HasSubstr("gone.csv"));
 }
 
 TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {

@@ -252,7 +252,7 @@ function AddEffect({effects, act, disabled}) {
 }
 
 export function Workbench({state, progress}) {
-  const [message, say] = useState('');
+  const [message, say] = useState(state.notice);
   const [values, setValues] = useState({});
   const [preview, setPreview] = useState(null);
   const act = async (work) => {
