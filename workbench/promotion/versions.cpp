@@ -13,11 +13,27 @@ namespace fs = std::filesystem;
 using config::schema::Error;
 using config::schema::RunError;
 
-constexpr int kKeptVersions = 20;
-
 bool there(const fs::path& file) {
   std::error_code ignored;
   return fs::is_regular_file(file, ignored);
+}
+
+/// Numbers of the versions of a file, in no order.
+std::vector<int> versions_of(const fs::path& file) {
+  std::vector<int> versions;
+  const std::string begin = file.filename().string() + ".v";
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::string digits = name.substr(std::min(name.size(), begin.size()));
+    if (!name.starts_with(begin) || digits.empty() || digits.size() > 6 ||
+        digits.find_first_not_of("0123456789") != std::string::npos) {
+      continue;
+    }
+    versions.push_back(std::stoi(digits));
+  }
+  return versions;
 }
 
 }  // namespace
@@ -37,16 +53,7 @@ fs::path version_of(const fs::path& file, int version) {
 
 int newest_version(const std::vector<fs::path>& files) {
   int newest = 0;
-  const std::string begin = files.front().filename().string() + ".v";
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(files.front().parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    const std::string digits = name.substr(std::min(name.size(), begin.size()));
-    if (!name.starts_with(begin) || digits.empty() || digits.size() > 6 ||
-        digits.find_first_not_of("0123456789") != std::string::npos) {
-      continue;
-    }
-    const int version = std::stoi(digits);
+  for (const int version : versions_of(files.front())) {
     const bool whole = std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
       return there(version_of(file, version));
     });
@@ -62,7 +69,10 @@ int replace(const std::vector<Replacement>& replacements) {
     files.push_back(each.file);
     before.push_back(read_whole(each.file));
   }
-  const int version = newest_version(files) + 1;
+  int version = 1;
+  for (const fs::path& file : files) {
+    for (const int kept : versions_of(file)) version = std::max(version, kept + 1);
+  }
   std::size_t done = 0;
   try {
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -77,9 +87,12 @@ int replace(const std::vector<Replacement>& replacements) {
     for (const fs::path& file : files) fs::remove(version_of(file, version), ignored);
     throw;
   }
-  // Old versions go, the newest kKeptVersions stay.
   std::error_code ignored;
-  for (const fs::path& file : files) fs::remove(version_of(file, version - kKeptVersions), ignored);
+  for (const fs::path& file : files) {
+    for (const int old : versions_of(file)) {
+      if (old <= version - kKeptVersions) fs::remove(version_of(file, old), ignored);
+    }
+  }
   return version;
 }
 

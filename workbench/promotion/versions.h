@@ -9,6 +9,9 @@
 
 namespace workbench::promotion {
 
+/// Versions of a file that are kept, beside the one in use.
+inline constexpr int kKeptVersions = 20;
+
 /// A file and what it is to hold.
 struct Replacement {
   std::filesystem::path file;
@@ -21,8 +24,9 @@ struct Replacement {
 /// FILE.v3.
 [[nodiscard]] std::filesystem::path version_of(const std::filesystem::path& file, int version);
 
-/// Keeps the files as a new version and replaces them, each whole or not at all. Returns the
-/// version. Throws config::schema::RunError; then the files are as they were.
+/// Keeps the files as a new version and replaces them, each whole or not at all; then every version
+/// but the newest kKeptVersions is removed. Returns the version. Throws config::schema::RunError;
+/// then the files are as they were.
 int replace(const std::vector<Replacement>& replacements);
 
 /// Brings a version back; it is used up, and what was in use becomes FILE.withdrawn. Throws

@@ -34,6 +34,43 @@ TEST(Versions, AreKeptAndBroughtBackOneAfterTheOther) {
   EXPECT_EQ(promotion::newest_version({a, b}), 0);
 }
 
+TEST(Versions, AreTheNewestTwenty) {
+  const program::Folder folder;
+  const fs::path a = folder.path() / "a.toml";
+  const fs::path b = folder.path() / "b.toml";
+  write(a, "a0");
+  write(b, "b0");
+  // as an earlier release left them, and other files
+  for (int version = 1; version <= 120; ++version) write(promotion::version_of(a, version), "old");
+  for (int version = 1; version <= 118; version += 3)
+    write(promotion::version_of(b, version), "old");
+  for (const char* other : {"a.toml.v", "a.toml.v7x", "a.toml.withdrawn", "aa.toml.v1"}) {
+    write(folder.path() / other, "another");
+  }
+  const auto kept = [&](const fs::path& file) {
+    int count = 0;
+    for (int version = 1; version < 1000; ++version) {
+      count += fs::exists(promotion::version_of(file, version)) ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(promotion::newest_version({a, b}), 118);
+  EXPECT_EQ(promotion::replace({{a, "a1"}, {b, "b1"}}), 121) << "no version is written over";
+  EXPECT_EQ(promotion::read_whole(promotion::version_of(a, 121)), "a0");
+  EXPECT_EQ(kept(a), promotion::kKeptVersions);
+  for (int k = 2; k < 40; ++k) {
+    (void)promotion::replace({{a, "a" + std::to_string(k)}, {b, "b" + std::to_string(k)}});
+  }
+  EXPECT_EQ(kept(a), promotion::kKeptVersions);
+  EXPECT_EQ(kept(b), promotion::kKeptVersions);
+  EXPECT_EQ(promotion::read_whole(a), "a39");
+  EXPECT_EQ(promotion::read_whole(promotion::version_of(a, promotion::newest_version({a, b}))),
+            "a38");
+  for (const char* other : {"a.toml.v", "a.toml.v7x", "a.toml.withdrawn", "aa.toml.v1"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / other)) << other;
+  }
+}
+
 TEST(Versions, LeaveAllAsItWasWhenOneCannotBeWritten) {
   const program::Folder folder;
   const fs::path a = folder.path() / "a.toml";
