@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "config/record/interpolation.h"
 #include "config/record/layout.h"
 #include "config/record/time_grid.h"
 #include "config/record/unit_text.h"
@@ -18,8 +19,6 @@ namespace {
 
 using schema::bad_data;
 using Values = std::vector<double>;
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string in_words(double time_s) {
   if (time_s >= 0.1) return fmt::format("{:.4g} s", time_s);
@@ -215,11 +214,6 @@ class Assembly {
 
   // --- interpolation to an even grid
 
-  struct Series {
-    Values t_s;
-    Values values;
-  };
-
   void require_increasing(const Values& t_s) const {
     for (std::size_t i = 1; i < t_s.size(); ++i) {
       if (!(t_s[i] > t_s[i - 1])) throw bad_data(file_.place(i), "time does not increase");
@@ -283,10 +277,11 @@ class Assembly {
       record_.t_s.push_back(from_s + static_cast<double>(k) * period_s);
     }
     std::vector<char> hole(samples, 0);
+    const EvenGrid grid{record_.t_s, period_s};
     for (auto& [channel, series] : all) {
       Values values = channel->role == Role::command
-                          ? held(series, hole, period_s)
-                          : interpolated(series, channel->role == Role::position, hole, period_s);
+                          ? held(series, grid, hole)
+                          : interpolated(series, channel->role == Role::position, grid, hole);
       if (channel->role == Role::command) {
         record_.u_V = std::move(values);
       } else if (channel->role == Role::position) {
@@ -304,59 +299,6 @@ class Assembly {
         "resampled to {:.6g} Hz: positions interpolated, the command held; the noise floor of "
         "interpolated positions is too low",
         1.0 / period_s));
-  }
-
-  /// A hole: no reading within this many periods, or four of the channel's own steps.
-  static double longest_hold_s(const Series& series, double period_s) {
-    Values steps;
-    for (std::size_t i = 1; i < series.t_s.size(); ++i) {
-      steps.push_back(series.t_s[i] - series.t_s[i - 1]);
-    }
-    if (steps.empty()) return 5.0 * period_s;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return 5.0 * std::max(period_s, *middle);
-  }
-
-  [[nodiscard]] Values held(const Series& series, std::vector<char>& hole, double period_s) const {
-    Values values;
-    const double longest_s = longest_hold_s(series, period_s);
-    std::size_t i = 0;
-    for (std::size_t k = 0; k < record_.t_s.size(); ++k) {
-      const double t_s = record_.t_s[k] + 1e-9 * period_s;
-      while (i + 1 < series.t_s.size() && series.t_s[i + 1] <= t_s) ++i;
-      const bool between = i + 1 < series.t_s.size();
-      if (between && series.t_s[i + 1] - series.t_s[i] > longest_s) hole[k] = 1;
-      values.push_back(series.values[i]);
-    }
-    return values;
-  }
-
-  [[nodiscard]] Values interpolated(const Series& series, bool main, std::vector<char>& hole,
-                                    double period_s) const {
-    Values values;
-    const double longest_s = longest_hold_s(series, period_s);
-    std::size_t i = 0;
-    for (std::size_t k = 0; k < record_.t_s.size(); ++k) {
-      const double t_s = record_.t_s[k];
-      if (series.t_s.empty()) {
-        values.push_back(kMissing);
-        continue;
-      }
-      while (i + 1 < series.t_s.size() && series.t_s[i + 1] <= t_s) ++i;
-      if (i + 1 >= series.t_s.size() || t_s <= series.t_s[i]) {
-        const bool at = std::abs(t_s - series.t_s[i]) < period_s;
-        values.push_back(at ? series.values[i] : kMissing);
-        continue;
-      }
-      const double step_s = series.t_s[i + 1] - series.t_s[i];
-      const double share = (t_s - series.t_s[i]) / step_s;
-      if (step_s > longest_s && main) hole[k] = 1;
-      values.push_back(step_s > longest_s && !main
-                           ? kMissing
-                           : (1.0 - share) * series.values[i] + share * series.values[i + 1]);
-    }
-    return values;
   }
 
   void leave_out(const std::vector<char>& hole) {
