@@ -326,6 +326,10 @@ Layout understand(const FileHead& head, const std::vector<MapEntry>& map, bool p
     std::vector<std::string> names;
     for (const FileColumn& column : head.columns) names.push_back(column.header);
     if (auto layout = plain_layout(names, head.where)) {
+      for (const Channel& channel : layout->channels) {
+        if (channel.role == Role::further || head.columns[channel.column].numbers) continue;
+        throw bad_data(head.where, "column " + names[channel.column] + " holds text, not numbers");
+      }
       std::erase_if(layout->channels,
                     [&](const Channel& channel) { return !head.columns[channel.column].numbers; });
       return *std::move(layout);

@@ -119,6 +119,11 @@ TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
   EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
 }
 
+TEST(Csv, RefusesWordsInPlaceOfTimeCommandOrPosition) {
+  expect_bad("t_s;u_V;y_m\n0;on;2\n1;off;2\n2;on;2\n", ":1", "column u_V holds text, not numbers");
+  expect_bad("t_s;u_V;y_m\n0;1;x\n1;1;x\n2;1;x\n", ":1", "column y_m holds text, not numbers");
+}
+
 TEST(Csv, RefusesADamagedFirstRowOfTwoColumns) {
   const auto read_command = [](const std::string& content, const char* map = "") {
     ReadOptions options;
