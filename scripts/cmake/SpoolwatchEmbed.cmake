@@ -36,7 +36,9 @@ function(spoolwatch_embed variable namespace header)
   set(source "${CMAKE_CURRENT_BINARY_DIR}/${variable}.cpp")
   file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT
     "#include \"${header}\"\n\n${assembly}\nnamespace ${namespace} {\n${functions}}\n")
-  set_source_files_properties("${source}" PROPERTIES OBJECT_DEPENDS "${files}")
+  # A source within a unity build would not be compiled again with the files.
+  set_source_files_properties("${source}" PROPERTIES OBJECT_DEPENDS "${files}"
+    SKIP_UNITY_BUILD_INCLUSION ON)
   set(${variable} "${source}" PARENT_SCOPE)
 endfunction()
 
