@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "config/units/printed_scale.h"
+
 namespace config::units {
 namespace {
 
@@ -117,6 +119,7 @@ constexpr std::array kUnits{
     PrintedUnit{"m3/s", "L/min", kLitrePerMinute_m3ps, 0.0},
     PrintedUnit{"m3/s/Pa", "mL/min/bar", 1e-3 * kLitrePerMinute_m3ps / kBar_Pa, 0.0},
     PrintedUnit{"Pa/(m3/s)", "bar/(L/min)", kBar_Pa / kLitrePerMinute_m3ps, 0.0},
+    PrintedUnit{"m2", "cm2", 1e-4, 0.0},
     PrintedUnit{"m3", "cm3", 1e-6, 0.0},
     PrintedUnit{"rad", "deg", 3.14159265358979323846 / 180.0, 0.0},
     PrintedUnit{"ratio", "%", 0.01, 0.0},
@@ -129,8 +132,9 @@ std::string si_unit(std::string_view name) {
 PrintedUnit unit_for(const std::string& si, double size) {
   // a torsional stiffness is per radian at any size
   if (si == "N/m" && motion() == Motion::rotary) size = 0.0;
+  const bool angle = si == "m2" && motion() == Motion::rotary;
   for (const PrintedUnit& unit : kUnits) {
-    if (si == unit.si && size >= kRoundsUp * unit.from) return unit;
+    if (!angle && si == unit.si && size >= kRoundsUp * unit.from) return unit;
   }
   return {si.c_str(), si.c_str(), 1.0, 0.0};
 }
@@ -231,6 +235,12 @@ Quantity quantity(std::string_view name, double value, double std_error, double 
   const bool lost = error < 0.5 * std::pow(10.0, -decimals);
   return {fixed(shown, decimals), lost ? fmt::format("{:.1g}", error) : fixed(error, decimals),
           text};
+}
+
+PrintedScale printed_scale(std::string_view name, double size) {
+  const std::string si = si_unit(name);
+  const PrintedUnit unit = unit_for(si, std::abs(size));
+  return {axis_unit(unit.unit), unit.in_si};
 }
 
 std::string words(const Quantity& quantity) {

@@ -9,6 +9,8 @@
 #include <optional>
 #include <thread>
 
+#include "config/units/printed_scale.h"
+
 namespace config::units {
 namespace {
 
@@ -35,6 +37,17 @@ TEST(Quantity, IsShownInTheUnitThatReadsWell) {
   EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, kNone), "180 deg");
   EXPECT_EQ(said("gain_mps_per_V", 0.0123, kNone), "12.3 mm/s/V");
   EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, kNone), "8000 N s2/m2");
+  EXPECT_EQ(said("area_m2", 6.33e-4, kNone), "6.33 cm2");
+}
+
+TEST(Quantity, TheScaleOfASizeIsThatOfItsQuantity) {
+  const PrintedScale pressure = printed_scale("supply_pressure_Pa", 6.89e6);
+  EXPECT_EQ(pressure.unit, "bar");
+  EXPECT_EQ(pressure.in_si, 1e5);
+  EXPECT_EQ(printed_scale("y_m", -0.1).unit, "mm");
+  EXPECT_EQ(printed_scale("discharge_coefficient", 0.6).unit, "");
+  const PrintedAxis rotary(Motion::rotary);
+  EXPECT_EQ(printed_scale("y_m", 0.1).unit, "mrad");
 }
 
 TEST(Quantity, OfAChangeHasTheUnitOfTheParameterThatChanges) {

@@ -162,7 +162,7 @@ TEST(HeldScale, IsASentenceWithBothAreasAndTheFallOfTheSupply) {
   const std::string words =
       held_scale_words(cylinder, {"mass_kg", "rated_flow_m3ps", "supply_droop.droop_Pa_per_m3ps"});
   EXPECT_EQ(words,
-            "cap_area_m2 and rod_side_area_m2 are held at 0.00196 m2 and 0.00116 m2: command and "
+            "cap_area_m2 and rod_side_area_m2 are held at 19.6 cm2 and 11.6 cm2: command and "
             "position show only ratios to them. If they are 10 % larger, so are mass_kg and "
             "rated_flow_m3ps, and 10 % smaller is supply_droop.droop_Pa_per_m3ps; their errors do "
             "not contain that.");
