@@ -1,6 +1,10 @@
 #include "workbench/serve/page_files.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cstdint>
+#include <string>
 
 #include "workbench/serve/page_texts.h"
 
@@ -45,11 +49,40 @@ constexpr std::array kEntries{Entry{"/", kHtml, page_index},
                               Entry{"/licences.txt", kText, library_licences},
                               Entry{"/icon.svg", "image/svg+xml", icon}};
 
+/// FNV-1a of all files.
+std::string build() {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const Entry& entry : kEntries) {
+    for (const char c : entry.text()) {
+      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    }
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+const std::string& folder_of_build() {
+  static const std::string folder = "/" + build();
+  return folder;
+}
+
+std::string index_text() {
+  constexpr std::string_view kPlace = "/BUILD";
+  std::string text(page_index());
+  for (auto at = text.find(kPlace); at != std::string::npos; at = text.find(kPlace, at + 1)) {
+    text.replace(at, kPlace.size(), folder_of_build());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::optional<PageFile> page_file(std::string_view path) {
+  static const std::string index = index_text();
+  if (path == "/") return PageFile{kHtml, index};
+  const bool lasting = path.starts_with(folder_of_build() + "/");
+  if (lasting) path.remove_prefix(folder_of_build().size());
   for (const Entry& entry : kEntries) {
-    if (entry.path == path) return PageFile{entry.type, entry.text()};
+    if (entry.path == path && path != "/") return PageFile{entry.type, entry.text(), lasting};
   }
   return std::nullopt;
 }

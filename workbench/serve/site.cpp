@@ -150,7 +150,9 @@ void Site::answer_read(const HttpHead& head, const HttpReply& reply) {
     return reply(std::move(file));
   }
   if (const auto file = page_file(head.path)) {
-    return reply({.type = file->type, .body = std::string(file->text)});
+    HttpResponse response{.type = file->type, .body = std::string(file->text)};
+    if (file->lasting) response.fields = {{"Cache-Control", "max-age=31536000, immutable"}};
+    return reply(std::move(response));
   }
   reply(refusal(404, "there is no such page"));
 }

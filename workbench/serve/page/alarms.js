@@ -1,6 +1,6 @@
 // Alarms of the daemon: acknowledge, put aside, never more.
-import {html, useState} from '/preact.js';
-import {post} from '/server.js';
+import {html, useState} from './preact.js';
+import {post} from './server.js';
 
 function rows(alarms, status) {
   if (alarms && !alarms.control && Array.isArray(alarms.alarms)) {

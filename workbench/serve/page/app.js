@@ -1,8 +1,8 @@
 // The page: entry, the two views, and whether the server is heard.
-import {html, render, useEffect, useState} from '/preact.js';
-import {Live} from '/live.js';
-import {enter, listen} from '/server.js';
-import {Workbench} from '/workbench.js';
+import {html, render, useEffect, useState} from './preact.js';
+import {Live} from './live.js';
+import {enter, listen} from './server.js';
+import {Workbench} from './workbench.js';
 
 const clock = (date) => date.toTimeString().slice(0, 8);
 

@@ -1,6 +1,6 @@
 // The models of the session as a tree, each with its error on samples that were not fitted, falling
 // towards what the sensor leaves.
-import {html} from '/preact.js';
+import {html} from './preact.js';
 
 // Share of the bar's width, on a logarithmic scale from half the floor to the worst error.
 function share(value, floor, worst) {

@@ -1,6 +1,6 @@
 // Laws of the model as curves with the record's samples beside them: an SVG each, so that they print.
-import {html, useEffect, useState} from '/preact.js';
-import {post} from '/server.js';
+import {html, useEffect, useState} from './preact.js';
+import {post} from './server.js';
 
 const WIDTH = 520, HEIGHT = 280, LEFT = 62, RIGHT = 10, TOP = 10, BOTTOM = 40;
 

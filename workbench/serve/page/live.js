@@ -1,11 +1,11 @@
 // The running stand: motion, command, the model's error, estimates and alarms. It follows, it can be
 // paused, and it says since when nothing has come.
-import {html, useEffect, useRef, useState} from '/preact.js';
-import {Alarms} from '/alarms.js';
-import {PlotStack} from '/plots.js';
-import {KEYS, Ring} from '/ring.js';
-import {post} from '/server.js';
-import {TriggerTools} from '/trigger.js';
+import {html, useEffect, useRef, useState} from './preact.js';
+import {Alarms} from './alarms.js';
+import {PlotStack} from './plots.js';
+import {KEYS, Ring} from './ring.js';
+import {post} from './server.js';
+import {TriggerTools} from './trigger.js';
 
 const STALE_S = 3;
 const FRAME_MS = 160;

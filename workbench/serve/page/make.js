@@ -1,6 +1,6 @@
 // A model from the numbers of data sheets: what `spoolwatch new` asks.
-import {html, useState} from '/preact.js';
-import {kinds, post} from '/server.js';
+import {html, useState} from './preact.js';
+import {kinds, post} from './server.js';
 
 export function MakeModel({act}) {
   const [all, setAll] = useState(null);

@@ -1,5 +1,5 @@
 // Time plots that share zoom and cursor, drawn by uPlot in the colours of the style sheet.
-import uPlot from '/uplot.js';
+import uPlot from './uplot.js';
 
 export const colour = (name) =>
     getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();

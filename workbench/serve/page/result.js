@@ -1,7 +1,7 @@
 // What a diagnosis or a fit has found: words, the candidates with the error that each would reach,
 // the law that was learned.
-import {Law} from '/laws.js';
-import {html} from '/preact.js';
+import {Law} from './laws.js';
+import {html} from './preact.js';
 
 function Candidates({result, run, running}) {
   if (!result.candidates || result.candidates.length === 0) return null;

@@ -1,5 +1,5 @@
 // Talk with the process that serves this page: requests, uploads, events.
-import {Stream} from '/stream.js';
+import {Stream} from './stream.js';
 
 let change = '';  // what every change must carry
 
@@ -64,7 +64,7 @@ const SILENT_MS = 3000;
 /// The way to the stream: {postMessage}, and `take` for what comes.
 function connect(take) {
   try {
-    const {port} = new SharedWorker('/stream.js', {type: 'module', name: 'spoolwatch'});
+    const {port} = new SharedWorker(new URL('./stream.js', import.meta.url), {type: 'module', name: 'spoolwatch'});
     port.onmessage = ({data}) => take(data);
     return port;
   } catch {

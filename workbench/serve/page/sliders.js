@@ -1,5 +1,5 @@
 // Parameters as sliders: every move is simulated at once, and nothing is kept until it is fitted.
-import {html} from '/preact.js';
+import {html} from './preact.js';
 
 const STEPS = 1000;
 

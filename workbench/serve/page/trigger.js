@@ -1,6 +1,6 @@
 // A trigger as that of an oscilloscope: the server looks for the crossing at the full rate.
-import {html, useEffect, useState} from '/preact.js';
-import {post} from '/server.js';
+import {html, useEffect, useState} from './preact.js';
+import {post} from './server.js';
 
 const FIRST = {mode: 'off', channel: 'y', edge: 'rising', level: 0, window_s: 2, before_ratio: 0.25, hold_off_s: 0};
 const STATES = {off: '', waiting: 'waiting for the crossing', capturing: 'capturing', 'held off': 'held off',

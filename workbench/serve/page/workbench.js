@@ -1,12 +1,12 @@
 // The workbench: a record against a model, where it fails, what would help, try, accept or undo.
-import {html, useEffect, useRef, useState} from '/preact.js';
-import {Ladder} from '/ladder.js';
-import {Laws} from '/laws.js';
-import {MakeModel} from '/make.js';
-import {PlotStack} from '/plots.js';
-import {Result} from '/result.js';
-import {latest, post, upload} from '/server.js';
-import {Sliders} from '/sliders.js';
+import {html, useEffect, useRef, useState} from './preact.js';
+import {Ladder} from './ladder.js';
+import {Laws} from './laws.js';
+import {MakeModel} from './make.js';
+import {PlotStack} from './plots.js';
+import {Result} from './result.js';
+import {latest, post, upload} from './server.js';
+import {Sliders} from './sliders.js';
 
 const SPECS = [
   {height: 270, label: 'position, mm', series: [
