@@ -11,6 +11,7 @@ namespace workbench::serve {
 [[nodiscard]] std::string_view page_server();
 [[nodiscard]] std::string_view page_stream();
 [[nodiscard]] std::string_view page_plots();
+[[nodiscard]] std::string_view page_curves();
 [[nodiscard]] std::string_view page_workbench();
 [[nodiscard]] std::string_view page_make();
 [[nodiscard]] std::string_view page_sliders();

@@ -1,4 +1,5 @@
 // Time plots that share zoom and cursor, drawn by uPlot in the colours of the style sheet.
+import {trace} from './curves.js';
 import uPlot from './uplot.js';
 
 export const colour = (name) =>
@@ -9,6 +10,15 @@ const FONT = '12px system-ui, sans-serif';
 function axis(label, extra = {}) {
   return {label, stroke: () => colour('soft'), font: FONT, labelFont: FONT, labelSize: 18, size: 58,
           grid: {stroke: () => colour('grid'), width: 1}, ticks: {show: false}, ...extra};
+}
+
+/// uPlot's way to draw a series.
+function curve(plot, index, from, to) {
+  const stroke = new Path2D();
+  uPlot.orient(plot, index, (series, xs, ys, x, y, across, up, left, top, width, height) =>
+    trace(xs, ys, from, to, (v) => across(v, x, width, left), (v) => up(v, y, height, top),
+          (at, high) => stroke.moveTo(at, high), (at, high) => stroke.lineTo(at, high)));
+  return {stroke, fill: null, clip: null, band: null, gaps: null, flags: 0};
 }
 
 /// Bands of time behind the curves: {spans: [[from, to]], tone, edge}.
@@ -87,7 +97,7 @@ export class PlotStack {
                axis(spec.label)],
         series: [{label: 'time', value: (u, v) => (v == null ? '' : v.toFixed(3) + ' s')},
                  ...spec.series.map((s) => ({
-                   label: s.name, stroke: () => colour(s.tone), width: s.width || 1.5, dash: s.dash,
+                   label: s.name, stroke: () => colour(s.tone), width: s.width || 1.5, dash: s.dash, paths: curve,
                    points: {show: false}, spanGaps: false,
                    value: (u, v) => (v == null ? '' : String(+v.toPrecision(4)))}))],
         hooks: {
