@@ -240,11 +240,12 @@ class Pages {
       if (from == to) continue;
       const Place then{to, true, place.caught_up || to == listener.end()};
       for (const StreamId id : ids) pages_[id] = then;
+      const std::vector<LivePoint> points = listener.part(from, to);
       std::string json = "{";
       if (!place.caught_up) {
-        json += fmt::format("\"begins\":{},\"newest\":{:.6f},", !place.begun, listener.newest_s());
+        json += fmt::format("\"to\":{:.6f},\"begins\":{},\"newest\":{:.6f},", points.back().t_s,
+                            !place.begun, listener.newest_s());
       }
-      const std::vector<LivePoint> points = listener.part(from, to);
       json += columns_json(points, points.front().t_s) + "}";
       batches.push_back({std::move(ids), place.caught_up ? "samples" : "history", std::move(json)});
     }

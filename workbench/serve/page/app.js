@@ -50,6 +50,7 @@ function App({first}) {
       progress: setProgress,
       history: pass('history'), samples: pass('samples'), status: pass('status'),
       alarms: pass('alarms'), dropped: pass('dropped'), capture: pass('capture'),
+      watching: pass('watching'),
     });
   }, [view]);
   return html`

@@ -9,17 +9,50 @@ import {TriggerTools} from './trigger.js';
 
 const STALE_S = 3;
 const FRAME_MS = 160;
-// Of an axis that turns, m stands for rad in every message.
-const LINEAR = {position: 'mm', error: 'µm'};
-const ROTARY = {position: 'mrad', error: 'µrad'};
-const specs = (units) => [
-  {height: 240, label: 'position, ' + units.position, series: [
-    {key: 'reference', name: 'reference', tone: 'reference'},
-    {key: 'y', name: 'measured', tone: 'measured', width: 2}]},
-  {height: 160, label: 'command, V', series: [{key: 'u', name: 'command', tone: 'command'}]},
-  {height: 180, label: 'error of the model, ' + units.error, series: [
-    {key: 'error', name: 'measured less model', tone: 'residual'}]},
-];
+/// Windows that watch at the same time for each further such pause between two pictures.
+const WINDOWS = 3;
+const FIRST_HEIGHT = 240, HEIGHT = 160;
+const USUAL = ['reference', 'y', 'u', 'error'];
+const WIDTHS = {y: 2}, DASHES = {u_requested: [5, 3]};
+
+/// The plots of these channels, as PlotStack takes them: one for each unit.
+function specs(channels) {
+  const plots = new Map();
+  for (const {key, words, plot, unit} of channels) {
+    const label = plot + ', ' + unit;
+    if (!plots.has(label)) plots.set(label, {height: plots.size ? HEIGHT : FIRST_HEIGHT, label, series: []});
+    plots.get(label).series.push({key, name: words, tone: 'channel-' + key, width: WIDTHS[key], dash: DASHES[key]});
+  }
+  return [...plots.values()];
+}
+
+/// Which channels are drawn: chosen once, and kept by the browser for this address.
+function useChosen() {
+  const [chosen, setChosen] = useState(() => {
+    try {
+      const kept = JSON.parse(localStorage.getItem('channels'));
+      return Array.isArray(kept) && kept.length ? kept : USUAL;
+    } catch {
+      return USUAL;
+    }
+  });
+  return [chosen, (keys) => {
+    setChosen(keys);
+    try { localStorage.setItem('channels', JSON.stringify(keys)); } catch { /* it lasts as long as the page */ }
+  }];
+}
+
+function Channels({channels, chosen, choose}) {
+  const turn = (key) => choose(chosen.includes(key) ? chosen.filter((one) => one !== key) : [...chosen, key]);
+  const drawn = channels.filter((c) => chosen.includes(c.key)).length;
+  return html`
+    <details class="channels"><summary>${drawn} of ${channels.length} channels</summary>
+      <div class="list">${channels.map((c) => html`
+        <label key=${c.key}><input type="checkbox" id=${'channel-' + c.key} checked=${chosen.includes(c.key)}
+            disabled=${drawn === 1 && chosen.includes(c.key)} onChange=${() => turn(c.key)} />
+          <i style=${{background: 'var(--channel-' + c.key + ')'}}></i> ${c.words}, ${c.unit}</label>`)}</div>
+    </details>`;
+}
 
 // Of what is on the screen.
 function meter(values) {
@@ -139,7 +172,7 @@ export function Live({feed, link, state, openWorkbench}) {
   now.current = {span, paused, view, capture: captured ? capture : null};
   if (!kept.current) {
     kept.current = {ring: new Ring(), came: 0, aged: null, fresh: false, frozen: null,
-                    after: 0, lost: false};
+                    after: 0, every: 1};
   }
   useEffect(() => {
     const k = kept.current;
@@ -164,6 +197,7 @@ export function Live({feed, link, state, openWorkbench}) {
       },
       alarms: ({detail}) => setAlarms(detail),
       capture: ({detail}) => setCapture(detail),
+      watching: ({detail}) => { k.every = Math.ceil(detail / WINDOWS); },
     };
     for (const [name, take] of Object.entries(on)) feed.addEventListener(name, take);
 
@@ -179,10 +213,15 @@ export function Live({feed, link, state, openWorkbench}) {
       setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(inside(key))])));
     };
     let frame = 0, told = 0;
+    const pictureOf = ({span, paused, view, capture}) =>
+      paused + '|' + span + '|' + view + '|' + (capture ? capture.number : '');
+    // What is paused or captured is drawn once.
+    const changed = () => pictureOf(now.current) !== k.key
+      || (k.fresh && !now.current.paused && !now.current.capture);
     const draw = (time) => {
+      if (!changed()) return;
       const {span, paused, view, capture} = now.current;
-      const key = paused + '|' + span + '|' + view + '|' + (capture ? capture.number : '');
-      if (!k.fresh && key === k.key) return;
+      const key = pictureOf(now.current);
       if (capture) {
         if (key === k.key) return;
         k.key = key;
@@ -211,7 +250,7 @@ export function Live({feed, link, state, openWorkbench}) {
     };
     // Frames are asked for only as often as they are drawn: an idle frame costs too.
     const frames = setInterval(() => {
-      if (!document.hidden) frame = requestAnimationFrame(draw);
+      if (++turn % k.every === 0 && !document.hidden && changed()) frame = requestAnimationFrame(draw);
     }, FRAME_MS);
     const ticking = setInterval(() => {
       const since = k.aged && k.aged.s != null ? k.aged.s + (Date.now() - k.aged.at) / 1000 : null;
