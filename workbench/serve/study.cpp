@@ -1,5 +1,7 @@
 #include "workbench/serve/study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +19,7 @@
 #include "workbench/present/record_section.h"
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
+#include "workbench/serve/slider_unit.h"
 
 namespace workbench::serve {
 namespace {
@@ -47,6 +50,13 @@ double heldout_of(const validation::Comparison& comparison) {
   const Eigen::Map<const Eigen::VectorXd> error_m(
       comparison.error_m.data(), static_cast<Eigen::Index>(comparison.error_m.size()));
   return greybox::rms(error_m, data.validation_mask);
+}
+
+/// "0 to 50 mm"
+std::string allowed_range(const greybox::CatalogueParameter& parameter, double value) {
+  const config::units::PrintedScale scale = slider_unit(parameter, value);
+  return config::units::typeset(fmt::format("{:.6g} to {:.6g} {}", parameter.info.min / scale.in_si,
+                                            parameter.info.max / scale.in_si, scale.unit));
 }
 
 /// A file made on the way to a change: removed where the change fails.
@@ -300,6 +310,8 @@ std::string Study::write_report() {
 
 std::vector<std::string> Study::assignments_of(const ParameterValues& values) const {
   const plant_sim::ModelFile& model = front().prepared.model;
+  const present::PrintedAxis axis(motion());
+  plant_sim::ModelFile shown = model;
   std::vector<std::string> assignments;
   for (const auto& [name, value] : values) {
     const auto known = greybox::parameter_catalogue(model);
@@ -308,8 +320,9 @@ std::vector<std::string> Study::assignments_of(const ParameterValues& values) co
                      [&, &wanted = name](const auto& one) { return one.name == wanted; });
     if (info == known.end()) throw UsageError("a parameter has no such name");
     if (!(value >= info->info.min && value <= info->info.max)) {
-      throw UsageError(name + ": is out of range; allowed: " + add::number_text(info->info.min) +
-                       " to " + add::number_text(info->info.max));
+      const double* const now = shown.value(name);
+      throw UsageError(name + ": is out of range; allowed: " +
+                       allowed_range(*info, now != nullptr ? *now : 0.0));
     }
     assignments.push_back((info->effect.empty() ? "parameters." : "effects.") + name + "=" +
                           add::number_text(value));

@@ -20,6 +20,7 @@
 #include "workbench/present/shell_command.h"
 #include "workbench/present/text.h"
 #include "workbench/serve/model_difference.h"
+#include "workbench/serve/slider_unit.h"
 #include "workbench/serve/study.h"
 
 namespace workbench::serve {
@@ -113,10 +114,12 @@ ordered_json json_of(const greybox::CatalogueParameter& parameter, double value)
   }
   low = std::max(low, info.min);
   high = std::min(high, info.max);
+  const config::units::PrintedScale scale = slider_unit(parameter, value);
   return {{"name", parameter.name},
           {"words", config::units::parameter_words(parameter.name)},
           {"what", config::units::axis_words(info.what)},
-          {"unit", typeset(config::units::axis_unit(config::units::unit_of(parameter.name)))},
+          {"unit", typeset(" " + scale.unit).substr(1)},
+          {"in_si", scale.in_si},
           {"effect", parameter.effect},
           {"value", number_or_null(value)},
           {"low", number_or_null(low)},

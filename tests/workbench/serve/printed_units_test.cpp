@@ -51,6 +51,7 @@ TEST_F(StudyPage, AJobPrintsItsOwnModelsUnitsWhileAnotherModelIsOpened) {
   study.open_record("turning.csv");
   study.open_model("turning.toml");
   EXPECT_THAT(study.state()["shown"].dump(), AllOf(HasSubstr("mrad"), Not(HasSubstr(" mm"))));
+  EXPECT_THAT(study.state()["parameters"].dump(), HasSubstr(R"("unit":"mrad/s/V","in_si":0.001)"));
 
   std::binary_semaphore begun(0);
   std::binary_semaphore opened(0);

@@ -47,6 +47,24 @@ TEST_F(StudyPage, ASliderShowsWhatCompareSaysOfTheSameValue) {
   EXPECT_EQ(page.post("preview", {{"values", {{"nothing", 1.0}}}}).status, 422);
 }
 
+TEST_F(StudyPage, SlidersStandInTheUnitsOfTheReports) {
+  ASSERT_EQ(page.post("add", {{"effect", "deadband"}}).status, 200);
+  const ordered_json parameters = page.state()["parameters"];
+  const auto unit = [&](const char* name) {
+    for (const ordered_json& one : parameters) {
+      if (one["name"] == name) return std::pair(one["unit"].get<std::string>(), one["in_si"]);
+    }
+    return std::pair(std::string("none of that name"), ordered_json());
+  };
+  EXPECT_THAT(unit("supply_pressure_Pa"), testing::Pair("bar", 1e5));
+  EXPECT_THAT(unit("damping_N_s_per_m"), testing::Pair("N·s/m", 1.0));
+  EXPECT_THAT(unit("deadband.half_width_V"), testing::Pair("mV", 1e-3));
+  const Answer refused =
+      page.post("preview", {{"values", {{"supply_pressure_Pa", 1e12}}}, {"rows", 400}});
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_THAT(refused.body, HasSubstr(" bar"));
+}
+
 TEST_F(StudyPage, WhatIsLeftOutIsIgnoredAndCanBeCountedAgain) {
   const ordered_json whole = page.state()["shown"];
   ASSERT_EQ(page.post("ignore", {{"spans", {"3:5"}}}).status, 200);

@@ -39,8 +39,9 @@ export async function upload(file) {
     body: file}));
 }
 
-/// Calls `run` for the newest argument only: while one runs, later ones replace each other.
-export function latest(run) {
+/// Calls `run` for the newest argument only: while one runs, later ones replace each other. What it
+/// throws goes to `failed`.
+export function latest(run, failed) {
   let running = false, next = null;
   return async (argument) => {
     next = {argument};
@@ -52,7 +53,7 @@ export function latest(run) {
       try {
         await run(now);
       } catch (error) {
-        console.warn(error.message);
+        failed(error.message);
       }
     }
     running = false;

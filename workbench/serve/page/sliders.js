@@ -1,4 +1,5 @@
-// Parameters as sliders: every move is simulated at once, and nothing is kept until it is fitted.
+// Parameters as sliders: every move is simulated at once, and nothing is kept until it is fitted. The
+// server says in which unit each is shown: value = in_si * shown number.
 import {html} from './preact.js';
 
 const STEPS = 1000;
@@ -25,19 +26,22 @@ function Slider({parameter, value, set}) {
   const moved = value !== undefined && value !== parameter.value;
   const now = value === undefined ? parameter.value : value;
   const id = 'parameter-' + parameter.name;
+  const printed = (value) => text(value / parameter.in_si);
+  const [low, high] = [parameter.low, parameter.high].map(printed);
   const take = (input) => {
-    const typed = input.value.trim() === '' ? NaN : Number(input.value);
-    if (Number.isFinite(typed)) set(parameter.name, typed);
-    else input.value = text(now);
+    const typed = input.value.trim() === '' ? NaN : Number(input.value.replace(',', '.'));
+    if (Number.isFinite(typed)) set(parameter.name, +(typed * parameter.in_si).toPrecision(12));
+    else input.value = printed(now);
   };
   return html`
     <li class=${moved ? 'moved' : ''}>
-      <label for=${id} title=${parameter.what}>
+      <label for=${id} title=${parameter.what + '; slider: ' + low + ' to ' + high + ' ' + parameter.unit}>
         ${parameter.effect ? parameter.effect + ': ' : ''}${parameter.words}</label>
-      <input inputmode="decimal" aria-label=${parameter.words + ' as a number'} value=${text(now)}
+      <input inputmode="decimal" aria-label=${parameter.words + ' as a number, ' + parameter.unit} value=${printed(now)}
              onChange=${(e) => take(e.target)} />
       <span class="unit">${parameter.unit}</span>
       <input id=${id} type="range" min="0" max=${STEPS} value=${place(parameter, now)}
+             aria-valuetext=${printed(now) + ' ' + parameter.unit}
              onInput=${(e) => set(parameter.name, valueAt(parameter, +e.target.value))} />
     </li>`;
 }

@@ -145,7 +145,7 @@ function usePlots({state, values, rms}) {
                        fetched ? 3 : 2);
     rms(moved ? curves : null);
     element.current.dataset.drawn = String(+(element.current.dataset.drawn || 0) + 1);
-  }));
+  }, (message) => now.current.say(message)));
 
   const zoom = (from, to) => {
     const {shown} = now.current.state;
@@ -264,10 +264,14 @@ export function Workbench({state, progress}) {
     }
   };
   const plots = usePlots({state, values, rms: setPreview});
-  plots.now.current.act = act;
+  Object.assign(plots.now.current, {act, say});
   const change = (values) => {
     setValues(values);
     plots.move(values);
+  };
+  const move = (values) => {
+    say('');
+    change(values);
   };
   useEffect(() => change({}), [state.model, state.trial, state.record]);
   const run = (what, body = {}) => act(() => post(what, body));
@@ -276,8 +280,8 @@ export function Workbench({state, progress}) {
       <div class="left">
         <${Files} state=${state} act=${act} />
         <${Sliders} parameters=${state.shown ? state.parameters : []} values=${values}
-                    set=${(name, value) => change({...plots.now.current.values, [name]: value})}
-                    reset=${() => change({})} running=${state.running}
+                    set=${(name, value) => move({...plots.now.current.values, [name]: value})}
+                    reset=${() => move({})} running=${state.running}
                     fit=${() => run('fit', {values})} rms=${preview && preview.rms} />
       </div>
       <div class="middle">
