@@ -8,6 +8,7 @@
 
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "workbench/serve/live_points.h"
 
 namespace workbench::serve {
 namespace {
@@ -115,7 +116,14 @@ TriggerSettings trigger_in(const Json& body) {
   settings.mode = mode == "normal"   ? TriggerSettings::Mode::normal
                   : mode == "single" ? TriggerSettings::Mode::single
                                      : TriggerSettings::Mode::off;
-  settings.channel = one_of("channel", {"reference", "y", "u", "error"});
+  settings.channel = text_in(body, "channel");
+  if (!column_of(settings.channel)) {
+    std::vector<std::string> keys;
+    for (std::size_t i = 0; i < kLiveColumns; ++i) {
+      keys.push_back(key_of(static_cast<LiveColumn>(i)));
+    }
+    throw UsageError("channel: allowed: " + config::schema::joined(keys));
+  }
   const std::string edge = one_of("edge", {"rising", "falling", "either"});
   settings.edge = edge == "falling"  ? TriggerSettings::Edge::falling
                   : edge == "either" ? TriggerSettings::Edge::either

@@ -4,6 +4,7 @@
 
 #include "workbench/control/answer_text.h"
 #include "workbench/control/order.h"
+#include "workbench/present/json.h"
 #include "workbench/present/text.h"
 #include "workbench/serve/site.h"
 
@@ -82,8 +83,8 @@ void Site::poll_control() {
       const Json status = control::ask_daemon(options_.control_socket,
                                               {{protocol::key::kCommand, protocol::kStatus}});
       for (const control::DetectableLines& source : control::detectable_lines(status)) {
-        out["detectable"].push_back(
-            {{"smallest", present::typeset(source.smallest)}, {"more", source.more}});
+        out["detectable"].push_back({{"smallest", present::typeset(source.smallest)},
+                                     {"more", present::typeset_all(source.more)}});
       }
     } catch (const std::exception& error) {
       out["control"] = error.what();

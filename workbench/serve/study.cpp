@@ -129,11 +129,7 @@ void Study::note_errors(Open& next, const std::string& model, const std::optiona
 
 void Study::show(Open next, bool saves) {
   next.shown.reset();
-  next.live_rotary = false;
-  if (!next.model.empty()) {
-    next.shown = plant_sim::load_model(folder_.existing(next.model));
-    next.live_rotary = next.shown->rotary();
-  }
+  if (!next.model.empty()) next.shown = plant_sim::load_model(folder_.existing(next.model));
   if (!next.trial.empty()) next.shown = plant_sim::load_model(folder_.existing(next.trial));
   if (!next.record.empty()) (void)folder_.existing(next.record);
   std::optional<Shown> accepted = shown_of(next.record, next.model, next.ignored);

@@ -90,7 +90,6 @@ class Study {
   struct Open : SavedSession {
     std::string beside;
     std::optional<plant_sim::ModelFile> shown;  ///< the trial, or else the model
-    bool live_rotary = false;                   ///< the axis of `model` turns
   };
   struct Shown {
     compare::PreparedComparison prepared;

@@ -350,7 +350,6 @@ ordered_json Study::state() {
   const present::PrintedAxis axis(motion());
   ordered_json out{{"record", open_.record}, {"model", open_.model}, {"trial", open_.trial}};
   out["notice"] = notice_;
-  out["rotary"] = open_.live_rotary;
   out["ignored"] = open_.ignored;
   out["files"] = ordered_json::array();
   for (const FolderFile& file : folder_.files()) {

@@ -12,7 +12,7 @@ struct TriggerSettings {
   enum class Edge { rising, falling, either };
 
   Mode mode = Mode::off;
-  std::string channel = "y";  ///< "reference", "y", "u" or "error"
+  std::string channel = "y";  ///< key of a LiveColumn
   Edge edge = Edge::rising;
   double level = 0.0;          ///< in the unit in which the page shows the channel
   double window_s = 2.0;       ///< length of a capture

@@ -53,7 +53,7 @@ def watch(args, folder):
             page.wait("document.querySelector('.live .side').innerText.includes('<img')")
             expect("no element came from a name", page.run("document.querySelectorAll('#app img').length") == 0)
             # How much the pressure's coefficient must change before its band is left, or that it has left it.
-            page.wait("/period.b1.*(−[0-9.]+ % or \\+[0-9.]+ %|is outside its band)/s.test(document.querySelector('.estimates').innerText)")
+            page.wait("/period: b1.*(−[0-9.]+ % or \\+[0-9.]+ %|is outside its band)/s.test(document.querySelector('.estimates').innerText)")
 
             # The picture stands while it is paused, and what comes is kept.
             page.click_text("Pause")

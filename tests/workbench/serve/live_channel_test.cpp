@@ -12,6 +12,8 @@
 #include <thread>
 
 #include "config/record/record.h"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/serve/live_channel.h"
 
@@ -27,8 +29,41 @@ constexpr double kBegin_s = 1.795e9;
 /// Position of sample k: rises by 0.1 mm a second.
 double position_m(int k) { return 0.3 + 1e-7 * k; }
 
+template <class Message>
+void write(lcm::LogFile& log, const char* channel, const Message& message) {
+  std::vector<char> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  lcm::LogEvent event{};
+  event.timestamp = message.tick;
+  event.channel = channel;
+  event.datalen = static_cast<int>(bytes.size());
+  event.data = bytes.data();
+  log.writeEvent(&event);
+}
+
+/// Supply of sample k: falls by 1 Pa a sample.
+double supply_Pa(int k) { return 7e6 - k; }
+
+/// Two rods and the supply, but no chambers, beside sample k.
+void write_beside(lcm::LogFile& log, int k) {
+  spoolwatch::rods_t rods{};
+  rods.run_id = 1;
+  rods.seq = rods.tick = k;
+  rods.count = 2;
+  rods.rod = {"glass", "<b>"};
+  rods.y_m = {position_m(k), position_m(k) + 1e-3};
+  rods.quality = rods.fault = {0, 0};
+  write(log, "LIVE_RODS", rods);
+  spoolwatch::pressures_t pressures{};
+  pressures.run_id = 1;
+  pressures.seq = pressures.tick = k;
+  pressures.supply_Pa = supply_Pa(k);
+  pressures.in_Pa = pressures.out_Pa = std::nan("");
+  write(log, "LIVE_PRESSURES", pressures);
+}
+
 /// A minute and a second of samples at a kilohertz.
-void write_log(const std::string& file) {
+void write_log(const std::string& file, bool with_more = false) {
   lcm::LogFile log(file, "w");
   ASSERT_TRUE(log.good());
   for (int k = 0; k < kSeconds * kRate_Hz; ++k) {
@@ -39,14 +74,9 @@ void write_log(const std::string& file) {
     sample.sample_time_s = 1.0 / kRate_Hz;
     sample.y_m = position_m(k);
     sample.u_applied_V = 1.0;
-    std::vector<char> bytes(static_cast<std::size_t>(sample.getEncodedSize()));
-    sample.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    lcm::LogEvent event{};
-    event.timestamp = k;
-    event.channel = "LIVE_SAMPLE";
-    event.datalen = static_cast<int>(bytes.size());
-    event.data = bytes.data();
-    log.writeEvent(&event);
+    sample.u_requested_V = 1.5;
+    if (with_more) write_beside(log, k);
+    write(log, "LIVE_SAMPLE", sample);
   }
 }
 
@@ -59,7 +89,11 @@ struct Sent {
 class Inboxes {
  public:
   void take(const std::vector<StreamId>& pages, const char* name, const std::string& json) {
-    if (std::string(name) == "status") return;
+    if (std::string(name) == "status") {
+      const std::lock_guard lock(mutex_);
+      status_ = json;
+      return;
+    }
     if (std::string(name) == "capture") ++captures;
     {
       const std::lock_guard lock(mutex_);
@@ -75,19 +109,28 @@ class Inboxes {
     return sent_[page];
   }
 
+  ordered_json status() {
+    const std::lock_guard lock(mutex_);
+    return ordered_json::parse(status_, nullptr, false);
+  }
+
   std::atomic<int> captures{0};
 
  private:
+  /// Commas count the numbers of all columns, of which "t" is one.
   std::size_t points_of(StreamId page) {
     std::size_t points = 0;
     for (const Sent& one : sent_[page]) {
-      points += static_cast<std::size_t>(std::count(one.json.begin(), one.json.end(), ',')) / 5;
+      const auto commas = std::count(one.json.begin(), one.json.end(), ',');
+      const auto columns = std::count(one.json.begin(), one.json.end(), '[');
+      points += static_cast<std::size_t>(commas / columns);
     }
     return points;
   }
   std::mutex mutex_;
   std::condition_variable more_;
   std::map<StreamId, std::vector<Sent>> sent_;
+  std::string status_;
 };
 
 /// Times of the points in order, s after kBegin_s.
@@ -200,6 +243,68 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   EXPECT_NEAR(read.sample_time_s, 1.0 / kRate_Hz, 1e-12);
   EXPECT_EQ(read.y_m.front(), position_m(29'001));
   EXPECT_NE(read.column("reference_m"), nullptr);
+  channel.end();
+  std::filesystem::remove_all(folder);
+}
+
+TEST(LiveChannel, PressuresAndRodsAreChannelsThatCanTrigger) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("live_columns_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string log = (folder / "log").string();
+  write_log(log, true);
+  Inboxes inboxes;
+  LiveChannel channel = channel_of(log, inboxes);
+  TriggerSettings settings;
+  settings.mode = TriggerSettings::Mode::single;
+  settings.channel = "supply";
+  settings.edge = TriggerSettings::Edge::falling;
+  settings.level = 69.699995;  // bar, between the samples of 30.000 and 30.001 s
+  settings.window_s = 4.0;
+  channel.set_trigger(settings);
+  channel.open(1);
+  (void)inboxes.when_it_has(1, 60 * kRate_Hz);
+  for (int i = 0; i < 500 && inboxes.captures == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+
+  ordered_json status = inboxes.status();
+  for (int i = 0; i < 500 && status["channels"].size() < 8; ++i) {  // one a second
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    status = inboxes.status();
+  }
+  std::map<std::string, std::string> listed;
+  for (const ordered_json& one : status["channels"]) {
+    listed[one["key"].get<std::string>()] = one["words"].get<std::string>() + "|" +
+                                            one["plot"].get<std::string>() + "|" +
+                                            one["unit"].get<std::string>();
+  }
+  const std::map<std::string, std::string> expected{{"reference", "reference|position|mm"},
+                                                    {"y", "measured|position|mm"},
+                                                    {"u", "command|command|V"},
+                                                    {"u_requested", "requested|command|V"},
+                                                    {"error", "measured less model|model error|µm"},
+                                                    {"supply", "supply pressure|pressure|bar"},
+                                                    {"rod_1", "rod glass|position|mm"},
+                                                    {"rod_2", "rod <b>|position|mm"}};
+  EXPECT_EQ(listed, expected) << "the chambers have no reading";
+  const Sent last = inboxes.when_it_has(1, 1).back();
+  const ordered_json batch = ordered_json::parse(last.json);
+  EXPECT_EQ(batch["supply"].size(), batch["t"].size());
+  EXPECT_FALSE(batch.contains("in"));
+
+  const auto capture = channel.newest_capture();
+  ASSERT_NE(capture, nullptr);
+  EXPECT_NEAR(capture->span.at_s - kBegin_s, 30.0005, 1e-5);
+  const std::string file = (folder / "capture.csv").string();
+  config::record::write_csv(record_of(*capture), file);
+  const config::record::Record read = config::record::read_record(file);
+  const auto* const supply = read.column("supply_pressure_Pa");
+  ASSERT_NE(supply, nullptr);
+  EXPECT_EQ(supply->front(), supply_Pa(29'001));
+  const auto* const rod = read.column("rod_2_m");
+  ASSERT_NE(rod, nullptr);
+  EXPECT_EQ(rod->front(), position_m(29'001) + 1e-3);
   channel.end();
   std::filesystem::remove_all(folder);
 }

@@ -3,13 +3,13 @@ import assert from 'node:assert';
 import {readFileSync} from 'node:fs';
 
 const text = readFileSync(process.argv[2], 'utf8');
-const {KEYS, Ring} = await import('data:text/javascript,' + encodeURIComponent(text));
+const {Ring} = await import('data:text/javascript,' + encodeURIComponent(text));
 
 // Points at these times after t0, y the time itself.
-const batch = (t0, t, more = {}) => ({t0, t, ...Object.fromEntries(KEYS.map((key) => [key, t.map((v) => t0 + v)])), ...more});
+const batch = (t0, t, more = {}) => ({t0, t, y: t.map((v) => t0 + v), ...more});
 const history = (t0, t, begins, newest) => batch(t0, t, {begins, newest});
 
-const all = (ring) => ring.part(-Infinity, Infinity);
+const all = (ring) => ring.part(-Infinity, Infinity, ['y']);
 
 const tests = {
   'what comes is appended': () => {
@@ -46,6 +46,15 @@ const tests = {
     assert.equal(ring.samples(batch(10, [0, 1])), false);
     assert.deepEqual(all(ring).t, [10, 11]);
   },
+  'a channel that comes later is missing before, and one that goes is missing after': () => {
+    const ring = new Ring();
+    ring.samples(batch(10, [0, 1]));
+    ring.samples(batch(12, [0, 1], {supply: [70, null]}));
+    ring.samples(batch(14, [0], {y: undefined}));
+    assert.deepEqual(ring.part(-Infinity, Infinity, ['supply', 'y', 'none']),
+      {t: [10, 11, 12, 13, 14], supply: [null, null, 70, null, null], y: [10, 11, 12, 13, null],
+       none: [null, null, null, null, null]});
+  },
   'a rounded time is no clock that went back': () => {
     const ring = new Ring();
     ring.samples(batch(1000, [0, 0.0050003]));
@@ -63,7 +72,7 @@ const tests = {
     assert.equal(ring.newest, 1999.92);
     assert.equal(sizes.size, 1);
     assert([...sizes][0] <= 4 * 120 * 50, [...sizes]);
-    const {t, y} = ring.part(1990, 1991);
+    const {t, y} = ring.part(1990, 1991, ['y']);
     assert.deepEqual(y, t);
     assert(t[0] < 1990 && t[1] === 1990 && t[t.length - 1] === 1991, t);
   },

@@ -3,7 +3,7 @@
 import {html, useEffect, useRef, useState} from './preact.js';
 import {Alarms} from './alarms.js';
 import {PlotStack} from './plots.js';
-import {KEYS, Ring} from './ring.js';
+import {Ring} from './ring.js';
 import {post} from './server.js';
 import {TriggerTools} from './trigger.js';
 
@@ -76,12 +76,10 @@ const shown = (v) => {
   return plain.length <= 8 ? plain : (+v.toPrecision(4)).toExponential().replace('e+', 'e');
 };
 
-function Meters({meters, units}) {
-  const names = {reference: 'reference, ' + units.position, y: 'position, ' + units.position,
-                 u: 'command, V', error: 'error, ' + units.error};
+function Meters({meters, channels}) {
   return html`
     <table class="meters"><thead><tr><th></th><th>min</th><th>max</th><th>peak</th><th>mean</th></tr></thead>
-      <tbody>${KEYS.map((key) => html`<tr><td>${names[key]}</td>
+      <tbody>${channels.map(({key, words, unit}) => html`<tr key=${key}><td>${words}, ${unit}</td>
         ${['low', 'high', 'peak', 'mean'].map((what) => html`
           <td class="n">${shown(meters[key] && meters[key][what])}</td>`)}</tr>`)}</tbody></table>`;
 }
@@ -96,32 +94,20 @@ function seen(r) {
   return sides.length ? sides.join(' or ') : html`<span class="hint">–</span>`;
 }
 
-/// With as many digits as the standard error leaves.
-function withError(value, error) {
-  if (!(error > 0) || !Number.isFinite(value)) return shown(value);
-  const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
-  const unit = power < -3 || power > 5 ? 10 ** power : 1;
-  const digits = Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error / unit))));
-  const text = (value / unit).toFixed(digits) + ' ± ' + (error / unit).toFixed(digits);
-  return unit === 1 ? text : '(' + text + ')e' + power;
-}
-
 function Estimates({status}) {
   const list = (status && status.estimates) || [];
-  const rows = list.flatMap((e) => e.name.map((name, i) => ({
-    name: e.source + '.' + name, valid: e.valid, reason: e.reason, value: e.value[i], error: e.std_error[i],
-    low: e.low[i], high: e.high[i], down: e.seen_down_ratio[i], up: e.seen_up_ratio[i]})));
+  const rows = list.flatMap((e) => e.words.map((words, i) => ({
+    words, valid: e.valid, text: e.text[i], value: e.value[i], low: e.low[i], high: e.high[i], band: e.band[i],
+    down: e.seen_down_ratio[i], up: e.seen_up_ratio[i],
+    reason: i === 0 ? e.reason : '', of: i === 0 ? e.words.length : 0})));
   if (rows.length === 0) return null;
   return html`
     <section class="estimates"><h2>Estimates, and what would be detected now</h2>
       <table><thead><tr><th></th><th>value</th><th>band</th><th>change seen from</th></tr></thead>
         <tbody>${rows.slice(0, 40).map((r) => html`
           <tr class=${r.valid && (r.value < r.low && r.low !== null || r.value > r.high && r.high !== null)
-              ? 'outside' : ''}><td>${r.name}</td>
-            <td class="n">${r.valid ? withError(r.value, r.error) : '-'}</td>
-            <td class="n">${r.low === null && r.high === null ? ''
-              : shown(r.low) + ' to ' + shown(r.high)}</td>
-            <td>${seen(r)}</td></tr>`)}</tbody></table>
+              ? 'outside' : ''}><td>${r.words}</td><td class="n">${r.text}</td><td class="n">${r.band}</td>
+            ${(r.valid || r.of > 0) && html`<td rowspan=${r.valid ? 1 : r.of}>${seen(r)}</td>`}</tr>`)}</tbody></table>
     </section>`;
 }
 
@@ -136,19 +122,18 @@ function Detectable({alarms}) {
     </section>`;
 }
 
-function Model({status, model, units}) {
+function Model({status, model}) {
   const m = status && status.model;
   if (!model) {
     return html`<section><h2>Model beside the stand</h2>
       <p class="hint">Choose a model in the workbench: it runs along.</p></section>`;
   }
-  const um = (v) => (v == null ? '-' : shown(1e6 * v) + ' ' + units.error);
   return html`
     <section class="beside-model"><h2>Model beside the stand</h2>
       <p><b>${model}</b>${status && status.model_note ? ': ' + status.model_note : ''}</p>
       ${m && html`
-        <p>error ${um(m.rms_m)}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor</p>
-        ${m.worst && html`<p>worst ${m.worst.where} (${um(m.worst.rms_m)})</p>`}
+        <p>error ${m.rms}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor</p>
+        ${m.worst && html`<p>worst ${m.worst.where} (${m.worst.rms})</p>`}
         ${m.note && html`<p class="hint">${m.note}</p>`}`}
     </section>`;
 }
@@ -168,15 +153,19 @@ export function Live({feed, link, state, openWorkbench}) {
   const [saved, setSaved] = useState('');
   const [refused, refuse] = useState('');
   const now = useRef();
-  const units = state.rotary ? ROTARY : LINEAR;
+  const [chosen, choose] = useChosen();
+  const [channels, setChannels] = useState([]);  // of the stream
+  const drawn = channels.filter((c) => chosen.includes(c.key));
+  const plots = JSON.stringify(specs(drawn));
   now.current = {span, paused, view, capture: captured ? capture : null};
   if (!kept.current) {
     kept.current = {ring: new Ring(), came: 0, aged: null, fresh: false, frozen: null,
                     after: 0, every: 1};
   }
   useEffect(() => {
-    const k = kept.current;
-    const stack = new PlotStack(element.current, specs(units), {onZoom: (from, to) => {
+    const k = kept.current, specs = JSON.parse(plots), keys = specs.flatMap((spec) => spec.series.map((s) => s.key));
+    k.key = null;  // nothing is drawn yet
+    const stack = new PlotStack(element.current, specs, {onZoom: (from, to) => {
       setView(from === null ? null : [k.base + from, k.base + to]);
     }});
     const on = {
@@ -193,6 +182,7 @@ export function Live({feed, link, state, openWorkbench}) {
       dropped: () => k.ring.gap(),
       status: ({detail}) => {
         setStatus(detail);
+        if (detail.channels) setChannels(detail.channels);
         k.aged = {s: detail.age_s, at: Date.now()};
       },
       alarms: ({detail}) => setAlarms(detail),
@@ -209,8 +199,8 @@ export function Live({feed, link, state, openWorkbench}) {
       stack.mark = {key: capture.channel, value: capture.level};
       stack.show(capture, from, to);
       element.current.dataset.points = capture.t.length;
-      const inside = (key) => capture[key].filter((v, i) => capture.t[i] >= from && capture.t[i] <= to);
-      setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(inside(key))])));
+      const inside = (key) => (capture[key] || []).filter((v, i) => capture.t[i] >= from && capture.t[i] <= to);
+      setMeters(Object.fromEntries(keys.map((key) => [key, meter(inside(key))])));
     };
     let frame = 0, told = 0;
     const pictureOf = ({span, paused, view, capture}) =>
@@ -223,7 +213,6 @@ export function Live({feed, link, state, openWorkbench}) {
       const {span, paused, view, capture} = now.current;
       const key = pictureOf(now.current);
       if (capture) {
-        if (key === k.key) return;
         k.key = key;
         drawCapture(capture, view);
         return;
@@ -233,22 +222,22 @@ export function Live({feed, link, state, openWorkbench}) {
       const {ring} = k;
       if (paused && !k.frozen && ring.length) k.frozen = ring.newest;
       if (!paused) { k.frozen = null; k.after = 0; }
-      if (paused && key === k.key) return;
       k.key = key;
       k.fresh = false;
       if (!ring.length) return;
       const newest = k.frozen || ring.newest;
       const [from, to] = view || [newest - span, newest];
-      const part = ring.part(from, to);
+      const part = ring.part(from, to, keys);
       k.base = newest;
       stack.show({...part, t: part.t.map((v) => v - newest)}, from - newest, to - newest);
       element.current.dataset.points = part.t.length;
       if (time - told > 450) {
         told = time;
-        setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(part[key])])));
+        setMeters(Object.fromEntries(keys.map((key) => [key, meter(part[key])])));
       }
     };
     // Frames are asked for only as often as they are drawn: an idle frame costs too.
+    let turn = 0;
     const frames = setInterval(() => {
       if (++turn % k.every === 0 && !document.hidden && changed()) frame = requestAnimationFrame(draw);
     }, FRAME_MS);
@@ -266,7 +255,7 @@ export function Live({feed, link, state, openWorkbench}) {
       for (const [name, take] of Object.entries(on)) feed.removeEventListener(name, take);
       stack.end();
     };
-  }, [units]);
+  }, [plots]);
 
   const open = async () => {
     try {
@@ -294,10 +283,11 @@ export function Live({feed, link, state, openWorkbench}) {
           <label class="row">window <select value=${span}
             onChange=${(e) => { setView(null); setSpan(+e.target.value); }}>
             ${[5, 10, 30, 60, 120].map((s) => html`<option value=${s}>${s} s</option>`)}</select></label>
+          <${Channels} channels=${channels} chosen=${chosen} choose=${choose} />
           ${view && html`<button onClick=${() => setView(null)}>
             ${captured && capture ? 'Whole capture' : 'Back to live'}</button>`}
         </p>
-        <${TriggerTools} status=${status} units=${units} capture=${capture} onSaved=${setSaved}
+        <${TriggerTools} status=${status} channels=${channels} capture=${capture} onSaved=${setSaved}
           onShow=${(on) => { setView(null); showCaptured(on); }} />
         ${captured && capture && html`
           <p class="captured">capture ${capture.number}: ${capture.samples} samples, crossing at ${clockOf(capture.t0)}
@@ -307,7 +297,7 @@ export function Live({feed, link, state, openWorkbench}) {
           <button onClick=${open}>Open in the workbench</button>
           ${' '}<span class="warn">${refused}</span></p>`}
         <div class="stack" ref=${element}></div>
-        <${Meters} meters=${meters} units=${units} />
+        <${Meters} meters=${meters} channels=${drawn} />
         <${Estimates} status=${status} />
       </div>
       <div class="side">
@@ -319,7 +309,7 @@ export function Live({feed, link, state, openWorkbench}) {
           ${status && status.notice && html`<p class="hint">${status.notice}</p>`}
         </section>
         <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} stale=${stale} />
-        <${Model} status=${status} model=${state.model} units=${units} />
+        <${Model} status=${status} model=${state.model} />
         <${Detectable} alarms=${stale ? null : alarms} />
       </div>
     </main>`;

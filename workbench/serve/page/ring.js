@@ -1,7 +1,7 @@
 // The samples of the last minutes as the live page keeps them. A server's batch is {t0, t, KEY: [...]},
 // times in s after t0; one of its history also says whether it begins one, and how far that reaches.
+// A channel that a batch lacks is missing in its samples.
 
-export const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;
 const SAME_S = 1e-4;  // times of two batches differ by their rounding
 
@@ -9,7 +9,7 @@ const SAME_S = 1e-4;  // times of two batches differ by their rounding
 /// then stay: a missing value is NaN in them, and null in what part() returns.
 export class Ring {
   constructor() {
-    this.kept = Object.fromEntries(['t', ...KEYS].map((key) => [key, new Float64Array(4096)]));
+    this.kept = {t: new Float64Array(4096)};
     this.clear();
   }
   clear() { this.begin = this.end = 0; }
@@ -35,12 +35,17 @@ export class Ring {
     return goes_on;
   }
   add(batch, from) {
-    for (let i = from; i < batch.t.length; ++i) this.push(batch.t0 + batch.t[i], (key) => batch[key][i]);
+    for (const key of Object.keys(batch)) {
+      if (Array.isArray(batch[key]) && !this.kept[key]) {
+        this.kept[key] = new Float64Array(this.kept.t.length).fill(NaN);
+      }
+    }
+    for (let i = from; i < batch.t.length; ++i) this.push(batch.t0 + batch.t[i], batch, i);
   }
-  push(t, value) {
+  push(t, batch, i) {
     if (this.end === this.kept.t.length) this.make_room();
+    for (const key in this.kept) this.kept[key][this.end] = batch[key]?.[i] ?? NaN;
     this.kept.t[this.end] = t;
-    for (const key of KEYS) this.kept[key][this.end] = value(key) ?? NaN;
     ++this.end;
   }
   /// Moves what is kept to the front of the arrays, of larger ones where it fills most of them.
@@ -60,7 +65,7 @@ export class Ring {
   }
   /// A missing sample: the curves have a gap here.
   gap() {
-    if (this.length) this.push(this.newest + 1e-6, () => NaN);
+    if (this.length) this.push(this.newest + 1e-6, {}, 0);
   }
   /// Place in the arrays of the first sample not before `t`.
   first(t) {
@@ -71,10 +76,16 @@ export class Ring {
     }
     return low;
   }
-  /// Those from one to the other, and one more to either side, so that lines reach the edges.
-  part(from, to) {
+  /// Times and these channels from one to the other, and one more to either side, so that lines reach
+  /// the edges.
+  part(from, to, keys) {
     const a = Math.max(this.begin, this.first(from) - 1), b = Math.min(this.end, this.first(to) + 1);
-    return Object.fromEntries(Object.entries(this.kept).map(([key, values]) =>
-      [key, Array.from(values.subarray(a, b), (v) => (Number.isNaN(v) ? null : v))]));
+    const out = {};
+    for (const key of ['t', ...keys]) {
+      const kept = this.kept[key], values = new Array(b - a);
+      for (let i = a; i < b; ++i) values[i - a] = kept && kept[i] === kept[i] ? kept[i] : null;
+      out[key] = values;
+    }
+    return out;
   }
 }

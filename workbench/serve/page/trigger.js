@@ -1,23 +1,30 @@
 // A trigger as that of an oscilloscope: the server looks for the crossing at the full rate.
-import {html, useEffect, useState} from './preact.js';
+import {html, useEffect, useRef, useState} from './preact.js';
 import {post} from './server.js';
 
 const FIRST = {mode: 'off', channel: 'y', edge: 'rising', level: 0, window_s: 2, before_ratio: 0.25, hold_off_s: 0};
 const STATES = {off: '', waiting: 'waiting for the crossing', capturing: 'capturing', 'held off': 'held off',
                 stopped: 'captured'};
 
-/// status: the server's {mode, channel, ..., state}, which all pages share.
-export function TriggerTools({status, units, capture, onShow, onSaved}) {
+const UNDERWAY_MS = 2000;
+
+/// status: the server's {mode, channel, ..., state}, which all pages share; channels: those of the stream.
+export function TriggerTools({status, channels, capture, onShow, onSaved}) {
   const [settings, setSettings] = useState(FIRST);
   const [said, say] = useState('');
   const server = status && status.trigger;
-  const text = server ? JSON.stringify({...server, state: undefined}) : '';
-  // Another page has set it.
+  const of = (all) => Object.fromEntries(Object.keys(FIRST).map((key) => [key, all[key]]));
+  const taken = useRef(''), sent = useRef({text: '', at: 0});
+  // Another page has set it; a status that was on its way while this one sets it is older.
   useEffect(() => {
     if (!server) return;
+    const text = JSON.stringify(of(server));
+    const older = text !== sent.current.text && Date.now() - sent.current.at < UNDERWAY_MS;
+    if (text === taken.current || older) return;
+    taken.current = text;
     onShow(server.mode !== 'off');
-    setSettings(Object.fromEntries(Object.keys(FIRST).map((key) => [key, server[key]])));
-  }, [text]);
+    setSettings(of(server));
+  }, [status]);
   const attempt = async (run) => {
     try {
       say('');
@@ -29,6 +36,7 @@ export function TriggerTools({status, units, capture, onShow, onSaved}) {
   const set = (change) => {
     const next = {...settings, ...change};
     setSettings(next);
+    sent.current = {text: JSON.stringify(of(next)), at: Date.now()};
     attempt(() => post('trigger', next));
   };
   const save = () => attempt(async () => onSaved((await post('capture')).name));
@@ -43,13 +51,12 @@ export function TriggerTools({status, units, capture, onShow, onSaved}) {
         if (e.target.value.trim() !== '' && Number.isFinite(value)) set({[key]: value});
         else e.target.value = settings[key];
       }} /> ${unit}</label>`;
-  const unit = {reference: units.position, y: units.position, u: 'V', error: units.error}[settings.channel];
+  const {unit} = channels.find((c) => c.key === settings.channel) || {};
   return html`
     <div class="row tools trigger">
       ${pick('mode', 'trigger', [['off', 'none: roll'], ['normal', 'normal'], ['single', 'single']])}
       ${settings.mode !== 'off' && html`
-        ${pick('channel', 'on', [['y', 'position'], ['reference', 'reference'], ['u', 'command'],
-                                 ['error', 'error of the model']])}
+        ${pick('channel', 'on', channels.map((c) => [c.key, c.words]))}
         ${pick('edge', 'edge', [['rising', 'rising'], ['falling', 'falling'], ['either', 'either']])}
         ${number('level', 'level', unit)}
         ${pick('window_s', 'length', [0.5, 1, 2, 5, 10, 20].map((s) => [s, s + ' s']))}
