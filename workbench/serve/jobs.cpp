@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "config/record/whole_file.h"
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/diagnosis_report.h"
@@ -48,8 +47,8 @@ bool Jobs::fit(fit::FitRequest request, Progress progress, const Done& done) {
           progress(fit::progress_words(now), 0, 0);
         };
         const fit::FitReport report = fit::run(prepared);
-        config::record::write_whole(request.output, fit::to_model(report));
-        return JobResult{"", request.output, "fitted", request.command, summary_of(report)};
+        return JobResult{"",       request.output,  fit::to_model(report),
+                         "fitted", request.command, summary_of(report)};
       },
       done);
 }
@@ -72,10 +71,10 @@ bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const
         };
         const diagnose::DiagnosisReport report =
             diagnose::run(prepared, [this] { return cancelled_.load(); });
-        JobResult result{"", "", "", request.command, summary_of(report)};
+        JobResult result{"", "", "", "", request.command, summary_of(report)};
         if (!report.fitted()) return result;
-        config::record::write_whole(request.output, diagnose::better_model_text(report));
         result.model = request.output;
+        result.text = diagnose::better_model_text(report);
         const auto& missing = report.diagnosis.missing;
         result.what = missing.empty() ? "fitted" : "+ " + config::schema::joined(missing, " + ");
         return result;

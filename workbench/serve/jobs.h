@@ -18,7 +18,8 @@ namespace workbench::serve {
 // NOLINTNEXTLINE(bugprone-exception-escape): moving ordered_json may throw by its type alone
 struct JobResult {
   std::string error;               ///< empty: none
-  std::string model;               ///< the file that was written, with its path; empty: none
+  std::string model;               ///< the file to be written, with its path; empty: none
+  std::string text;                ///< of that file
   std::string what;                ///< "fitted", "+ friction"
   std::string command;             ///< the command line that does the same
   nlohmann::ordered_json summary;  ///< for the page; null: none

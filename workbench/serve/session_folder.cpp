@@ -1,7 +1,14 @@
 #include "workbench/serve/session_folder.h"
 
-#include <algorithm>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "workbench/files/file_kind.h"
 #include "workbench/serve/gate.h"
@@ -94,12 +101,39 @@ SessionFolder::SessionFolder(fs::path folder) : folder_(std::move(folder)) {
   if (error || !fs::is_directory(folder_)) {
     throw RunError("--folder " + folder_.string() + ": cannot be made or is no folder");
   }
+  name_ = fs::absolute(folder_).lexically_normal().string();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     if (entry.path().filename().string().starts_with(kUpload)) {
       std::error_code ignored;
       fs::remove(entry.path(), ignored);
     }
   }
+}
+
+std::string SessionFolder::trouble(bool tries) const {
+  constexpr std::size_t kRoom = 64 * 1024;  // several model files and the session
+  const auto told = [&](const std::string& why) { return name_ + ": " + why; };
+  struct stat found {};
+  if (stat(name_.c_str(), &found) != 0 || !S_ISDIR(found.st_mode)) return told("is gone");
+  // The working directory may be one that was removed, and the name that of a new one.
+  if (folder_ == "." && chdir(name_.c_str()) != 0) return told(std::strerror(errno));
+  if (access(name_.c_str(), W_OK | X_OK) != 0) return told(std::strerror(errno));
+  struct statvfs space {};
+  if (statvfs(name_.c_str(), &space) == 0 && space.f_blocks > 0 &&
+      space.f_bavail * space.f_frsize < kRoom) {
+    return told(std::strerror(ENOSPC));
+  }
+  if (!tries) return "";
+  const fs::path file = upload_file();
+  std::string why;
+  try {
+    config::record::write_whole(file, std::string(kRoom, '\n'));
+  } catch (const RunError& error) {
+    why = error.what();
+  }
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return why.empty() ? "" : told("nothing can be written: " + why);
 }
 
 std::vector<FolderFile> SessionFolder::files() const {

@@ -37,12 +37,17 @@ class SessionFolder {
   /// config::schema::RunError.
   [[nodiscard]] std::string keep_upload(const std::filesystem::path& upload,
                                         const std::string& name) const;
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// Why nothing can be written here, in one line; empty: it can. `tries`: by writing a file, else
+  /// by what the system says of folder and space.
+  [[nodiscard]] std::string trouble(bool tries) const;
+  /// With its whole path.
+  [[nodiscard]] const std::string& name() const { return name_; }
 
   static constexpr std::size_t kMostFiles = 1000;
 
  private:
   std::filesystem::path folder_;
+  std::string name_;
 };
 
 /// Name for a model made from `model`: "rig.toml" and "-fitted" make "rig-fitted.toml", and so does

@@ -1,5 +1,8 @@
 #include "workbench/serve/site.h"
 
+#include <chrono>
+
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "workbench/control/order.h"
 #include "workbench/model/kinds.h"
@@ -19,6 +22,7 @@ constexpr std::string_view kFiles = "/files/";
 constexpr std::string_view kUploads = "/api/upload";
 constexpr std::string_view kLogin = "/api/login";
 constexpr std::size_t kMostStudyWork = 64;
+constexpr std::chrono::seconds kFolderPeriod{1};
 
 HttpResponse json_response(const Json& json, int status = 200) {
   return {.status = status,
@@ -72,6 +76,7 @@ Site::Site(const SiteOptions& options)
           },
           [this] { poll_control(); }) {
   watch_model();
+  folder_watch_ = std::thread([this] { watch_folder(); });
 }
 
 Site::~Site() { end(); }
@@ -79,6 +84,12 @@ Site::~Site() { end(); }
 void Site::serve_on(HttpServer& server) { server_ = &server; }
 
 void Site::end() {
+  {
+    const std::lock_guard lock(ends_mutex_);
+    ends_ = true;
+  }
+  ends_soon_.notify_one();
+  if (folder_watch_.joinable()) folder_watch_.join();
   jobs_.end();
   study_lane_.end();
   live_.end();
@@ -298,14 +309,40 @@ void Site::on_study(const HttpReply& reply, std::function<Json()> work, bool cha
     return reply(refusal(503, "too much is waiting: try again"));
   }
   study_lane_.post([this, reply, work = std::move(work), changes] {
+    if (!trouble_.empty()) check_folder(false);
     try {
       HttpResponse response = json_response(work());
       if (changes) publish_state();
       reply(std::move(response));
     } catch (const std::exception& error) {
       reply(refusal_of(error));
+      if (changes) check_folder(dynamic_cast<const config::schema::RunError*>(&error) != nullptr);
     }
   });
+}
+
+void Site::check_folder(bool failed) {
+  const std::string before = std::exchange(trouble_, folder_.trouble(failed || !trouble_.empty()));
+  if (trouble_.empty() && !before.empty()) {
+    try {
+      study_.restore();
+      if (unsaved_) take_result(unsaved_->result, unsaved_->parent);
+      if (unsaved_) last_result_ = unsaved_->result.summary;
+      unsaved_.reset();
+    } catch (const config::schema::Error& error) {
+      trouble_ = error.what();
+    }
+  }
+  if (trouble_ != before) publish_state();
+}
+
+void Site::watch_folder() {
+  std::unique_lock lock(ends_mutex_);
+  while (!ends_soon_.wait_for(lock, kFolderPeriod, [this] { return ends_; })) {
+    if (watching_ > 0 && study_lane_.waiting() == 0) {
+      study_lane_.post([this] { check_folder(false); });
+    }
+  }
 }
 
 Site::Json Site::save_capture() {
@@ -340,17 +377,28 @@ void Site::finish_job(JobResult result, const std::string& parent) {
   study_lane_.post([this, result = std::move(result), parent] {
     last_result_ = result.summary;
     std::string error = result.error;
+    unsaved_.reset();
     try {
-      if (!result.model.empty()) {
-        const std::string model = std::filesystem::path(result.model).filename().string();
-        study_.take_trial(model, parent, result.what, result.command);
-      }
+      take_result(result, parent);
     } catch (const std::exception& failed) {
       error = failed.what();
+      check_folder(true);
+      if (!trouble_.empty()) {
+        last_result_["unsaved"] = error;
+        error.clear();
+        unsaved_ = {result, parent};
+      }
     }
     if (!error.empty()) last_result_ = {{"kind", "error"}, {"words", error}};
     publish_state();
   });
+}
+
+void Site::take_result(const JobResult& result, const std::string& parent) {
+  if (result.model.empty()) return;
+  config::record::write_whole(result.model, result.text);
+  const std::string model = std::filesystem::path(result.model).filename().string();
+  study_.take_trial(model, parent, result.what, result.command);
 }
 
 void Site::order(const Json& body, const HttpReply& reply) {

@@ -7,10 +7,13 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "workbench/serve/gate.h"
 #include "workbench/serve/http_server.h"
@@ -70,6 +73,12 @@ class Site final : public HttpHandler {
   /// At most ten events a second.
   Jobs::Progress progress();
   void finish_job(JobResult result, const std::string& parent);
+  /// Writes the model of a job, which becomes the trial.
+  void take_result(const JobResult& result, const std::string& parent);
+  /// Whether files can be written; what waits for it is then done. `failed`: something was not
+  /// written just now.
+  void check_folder(bool failed);
+  void watch_folder();
   void publish(unsigned topic, const char* name, const Json& data);
   void publish_state();
   Json whole_state();
@@ -85,10 +94,21 @@ class Site final : public HttpHandler {
   Study study_;
   Json last_result_;
   std::string live_model_;
+  std::string trouble_;  ///< of the folder; empty: none
+  struct Unsaved {
+    JobResult result;
+    std::string parent;
+  };
+  std::optional<Unsaved> unsaved_;  ///< a job's result that could not be written
   LiveChannel live_;
   Lane control_lane_;
   Lane study_lane_;
   Jobs jobs_;
+  std::atomic<int> watching_{0};  ///< pages
+  std::mutex ends_mutex_;
+  std::condition_variable ends_soon_;
+  bool ends_ = false;
+  std::thread folder_watch_;
 };
 
 }  // namespace workbench::serve

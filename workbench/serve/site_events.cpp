@@ -29,7 +29,8 @@ Jobs::Progress Site::progress() {
 
 Site::Json Site::whole_state() {
   Json state = study_.state();
-  state["folder"] = std::filesystem::absolute(folder_.folder()).lexically_normal().string();
+  state["folder"] = folder_.name();
+  state["trouble"] = trouble_;
   state["running"] = jobs_.running();
   state["result"] = last_result_;
   state["change"] = gate_.change_secret();
@@ -64,10 +65,12 @@ void Site::publish(unsigned topic, const char* name, const Json& data) {
 }
 
 void Site::on_stream_open(StreamId stream, unsigned topics) {
+  ++watching_;
   if ((topics & kLiveTopic) != 0) live_.open(stream);
 }
 
 void Site::on_stream_closed(StreamId stream, unsigned topics) {
+  --watching_;
   if ((topics & kLiveTopic) != 0) live_.close(stream);
 }
 

@@ -72,6 +72,10 @@ class Study {
   void take_trial(const std::string& model, const std::string& parent, const std::string& what,
                   const std::string& command);
 
+  /// After the folder was lost: writes the session again, and its models that are gone. Throws
+  /// config::schema::RunError.
+  void restore();
+
   /// The model that is open, for the live page; empty: none.
   [[nodiscard]] const std::string& live_model() const { return open_.model; }
 
@@ -115,10 +119,12 @@ class Study {
   [[nodiscard]] nlohmann::ordered_json side_by_side() const;
   /// `changed`: the curves of a model with other values, alone; null: everything.
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
+  void keep_text(const std::string& model);
 
   const SessionFolder& folder_;
   std::string notice_;  ///< why the session is not the saved one; empty: it is
   Open open_;
+  std::map<std::string, std::string> kept_;  ///< text of each model that was shown
   std::optional<Shown> accepted_, tried_, beside_;
 };
 

@@ -9,13 +9,17 @@ from server_process import NoPage
 SKIPPED = 77
 
 
+class Skip(Exception):
+    """Why a test cannot run here."""
+
+
 def expect(what, happened):
     if not happened:
         raise AssertionError(what)
 
 
 def run(test):
-    """Runs test(args, folder); exit code 77 where there is no Chromium or no page."""
+    """Runs test(args, folder); exit code 77 where there is no Chromium or no page, or it raises Skip."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
     parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
@@ -29,7 +33,7 @@ def run(test):
     try:
         with tempfile.TemporaryDirectory() as folder:
             test(args, pathlib.Path(folder))
-    except NoPage as missing:
+    except (NoPage, Skip) as missing:
         print(missing)
         return SKIPPED
     return 0

@@ -1,4 +1,5 @@
 // A session keeps names, files and its state, after refused changes too.
+#include <fstream>
 #include <functional>
 
 #include "config/schema/error.h"
@@ -8,6 +9,11 @@
 
 namespace workbench::serve {
 namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 TEST_F(StudyPage, ASessionGoesOnWhereItEnded) {
   ASSERT_EQ(page.post("ignore", {{"spans", {"3:5"}}}).status, 200);
@@ -70,6 +76,31 @@ TEST_F(StudyPage, ModelsFittedAgainAreNumbered) {
   }
   ASSERT_EQ(page.post("add", {{"effect", "null_bias"}}).status, 200);
   EXPECT_EQ(page.state()["trial"], "thesis+null_bias.toml");
+}
+
+TEST_F(StudyPage, AFolderThatIsLostIsSaidAndItsSessionIsWrittenAgain) {
+  ASSERT_EQ(page.post("add", {{"effect", "null_bias"}}).status, 200);
+  ASSERT_EQ(page.post("accept").status, 200);
+  const ordered_json before = page.state();
+  EXPECT_EQ(before["trouble"], "");
+  const std::filesystem::path away = page.folder / "away";
+  std::filesystem::rename(page.session, away);
+  EXPECT_EQ(page.post("add", {{"effect", "friction"}}).status, 422);
+  const ordered_json lost = page.state();
+  EXPECT_EQ(lost["trouble"], page.session.string() + ": is gone");
+  EXPECT_EQ(lost["model"], before["model"]);
+  EXPECT_EQ(lost["lineage"], before["lineage"]);
+
+  std::filesystem::create_directories(page.session);
+  EXPECT_EQ(page.state()["trouble"], "");
+  for (const char* const file : {"thesis.toml", "thesis+null_bias.toml"}) {
+    EXPECT_EQ(text_of(page.session / file), text_of(away / file)) << file;
+  }
+  const SessionFolder folder(page.session);
+  EXPECT_EQ(Study(folder).state()["lineage"].size(), 2U) << "but the record is not there";
+  std::filesystem::copy(away / "multisine.csv", page.session);
+  ASSERT_EQ(page.post("add", {{"effect", "friction"}}).status, 200);
+  EXPECT_EQ(page.state()["trial"], "thesis+null_bias+friction.toml");
 }
 
 TEST(SessionFolder, DerivedNamesDoNotGrow) {

@@ -55,6 +55,8 @@ function App({first}) {
   }, [view]);
   return html`
     <${Header} view=${view} show=${show} link=${link} folder=${state.folder} />
+    ${state.trouble && html`<p class="trouble" role="alert"><b>Nothing can be saved.</b> ${state.trouble}.
+      What was accepted is kept: it is written again when this is mended. What you change now is refused.</p>`}
     ${view === 'live' ? html`<${Live} feed=${feed} link=${link} state=${state}
                                      openWorkbench=${() => show('workbench')} />`
                       : html`<${Workbench} state=${state} progress=${progress} />`}`;

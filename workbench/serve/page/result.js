@@ -42,6 +42,7 @@ export function Result({result, run, running}) {
       <h2>${result.kind === 'diagnosis' ? 'Diagnosis' : result.kind === 'fit' ? 'Fit' : 'Not done'}</h2>
       ${result.interrupted && html`<p class="warn">Interrupted: the best so far.</p>`}
       <p class="words">${result.words}</p>
+      ${result.unsaved && html`<p class="warn">Its model waits to be written: ${result.unsaved}</p>`}
       ${(result.laws || []).map((law) => html`
         <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>
         <${Law} law=${{...law.curve, title: law.name, key: 'the law'}} />`)}
