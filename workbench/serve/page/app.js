@@ -8,12 +8,12 @@ const clock = (date) => date.toTimeString().slice(0, 8);
 
 function Header({view, show, link, folder}) {
   const tab = (name, text) => html`
-    <a href=${'#' + name} role="tab" aria-selected=${view === name}
+    <a href=${'#' + name} aria-current=${view === name ? 'page' : null}
        onClick=${(e) => { e.preventDefault(); show(name); }}>${text}</a>`;
   return html`
     <header>
       <h1>Spoolwatch</h1>
-      <nav role="tablist">${tab('workbench', 'Workbench')}${tab('live', 'Live stand')}</nav>
+      <nav>${tab('workbench', 'Workbench')}${tab('live', 'Live stand')}</nav>
       <span class="folder" title="the session's files">${folder}</span>
       <span class=${'link ' + (link.alive ? 'good' : 'bad')} role="status">
         ${link.alive ? 'connected' : 'no server since ' + clock(link.since)}</span>
@@ -61,6 +61,9 @@ function App({first}) {
                                      openWorkbench=${() => show('workbench')} />`
                       : html`<${Workbench} state=${state} progress=${progress} />`}`;
 }
+
+// A file dropped where nothing takes it must not replace the page.
+for (const name of ['dragover', 'drop']) addEventListener(name, (e) => e.preventDefault());
 
 const root = document.getElementById('app');
 enter().then((first) => {

@@ -15,7 +15,7 @@ function Candidates({result, run, running}) {
   return html`
     <h3>What would help</h3>
     <table>
-      <thead><tr><th>effect</th><th>error it would reach</th><th>chance</th><th></th></tr></thead>
+      <thead><tr><th>effect</th><th>would reach</th><th>chance</th><th></th></tr></thead>
       <tbody>${rows.map((one) => html`
         <tr key=${one.effect}>
           <td>${one.effect}${one.round > 1 ? html` <small>round ${one.round}</small>` : ''}</td>
@@ -46,8 +46,8 @@ export function Result({result, run, running}) {
       ${(result.laws || []).map((law) => html`
         <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>
         <${Law} law=${{...law.curve, title: law.name, key: 'the law'}} />`)}
-      <${Steps} result=${result} />
-      <${Candidates} result=${result} run=${run} running=${running} />
+      <div class="answers"><div><${Steps} result=${result} /></div>
+        <div><${Candidates} result=${result} run=${run} running=${running} /></div></div>
       ${result.remarks && result.remarks.length > 0 && html`
         <details><summary>More</summary>${result.remarks.map((line) => html`<p>${line}</p>`)}</details>`}
     </section>`;

@@ -42,6 +42,7 @@ function Slider({parameter, value, set}) {
       <span class="unit">${parameter.unit}</span>
       <input id=${id} type="range" min="0" max=${STEPS} value=${place(parameter, now)}
              aria-valuetext=${printed(now) + ' ' + parameter.unit}
+             style=${{'--share': place(parameter, now) / STEPS}}
              onInput=${(e) => set(parameter.name, valueAt(parameter, +e.target.value))} />
     </li>`;
 }

@@ -25,22 +25,24 @@ function Files({state, act}) {
   const take = async (files) => {
     for (const file of files) await act(() => upload(file));
   };
-  const drop = (e) => {
-    e.preventDefault();
-    setOver(false);
-    take(e.dataTransfer.files);
-  };
+  // Anywhere on the page.
+  useEffect(() => {
+    const on = {
+      dragover: (e) => { e.preventDefault(); setOver(e.dataTransfer.types.includes('Files')); },
+      dragleave: (e) => { if (!e.relatedTarget) setOver(false); },
+      drop: (e) => { e.preventDefault(); setOver(false); take(e.dataTransfer.files); }};
+    for (const [name, does] of Object.entries(on)) addEventListener(name, does);
+    return () => { for (const [name, does] of Object.entries(on)) removeEventListener(name, does); };
+  }, []);
   const records = state.files.filter((f) => f.kind === 'record');
   const models = state.files.filter((f) => f.kind === 'model');
   const choose = (what, name) => act(() => post(what, {name}));
   return html`
-    <section class=${'files' + (over ? ' over' : '')} onDrop=${drop}
-             onDragOver=${(e) => { e.preventDefault(); setOver(true); }}
-             onDragLeave=${() => setOver(false)}>
+    <section class=${'files' + (over ? ' over' : '')}>
       <h2>Record and model</h2>
       <label>Record
         <select id="record" value=${state.record} onChange=${(e) => choose('record', e.target.value)}>
-          ${!state.record && html`<option value="">choose, or drop a file here</option>`}
+          ${!state.record && html`<option value="">choose, or drop a file</option>`}
           ${records.map((f) => html`<option value=${f.name}>${f.name}</option>`)}
         </select></label>
       <label>Model
@@ -54,7 +56,7 @@ function Files({state, act}) {
           </optgroup>
         </select></label>
       <p class="row"><button onClick=${() => input.current.click()}>Add a file</button>
-        <span class="hint">CSV, MAT, LCM log, TOML; or drop it here</span></p>
+        <span class="hint">or drop it on the page: CSV, MAT, LCM log, TOML</span></p>
       <input id="upload" type="file" multiple hidden ref=${input}
              onChange=${(e) => { take(e.target.files); }} />
       <${MakeModel} act=${act} />
@@ -82,6 +84,20 @@ function Verdict({shown, trial, running, act, selected, select}) {
       <details><summary>In words</summary>
         ${[...shown.lines, ...shown.notes].map((line) => html`<p>${line}</p>`)}</details>
     </section>`;
+}
+
+/// The next step of a session that shows nothing yet.
+function Welcome({state}) {
+  if (state.shown) return null;
+  return html`
+    <p class="welcome">${state.record
+      ? html`<b>${state.record}</b> is read. Now choose a model, one of the shipped ones to begin with, or make one
+          from data sheets: the page then shows where it fails, and finds out what it misses.`
+      : state.model
+        ? html`Now drop a record on this page, or choose one of the folder: the page then shows where
+            <b> ${state.model}</b> fails, and finds out what it misses.`
+        : html`Drop a record on this page and choose a model: the page shows where the model fails, and finds
+            out what it misses.`}</p>`;
 }
 
 /// Two models side by side: their errors, and only what differs.
@@ -205,13 +221,14 @@ function Progress({progress, running, cancel}) {
   const {text, done, of} = progress || {text: 'preparing', done: 0, of: 0};
   return html`
     <section class="progress" role="status">
-      <progress max=${of || 1} ...${of ? {value: done} : {}}></progress>
+      <progress aria-label="progress" max=${of || 1} ...${of ? {value: done} : {}}></progress>
       <p class="row"><button onClick=${cancel}>Cancel</button> <span>${text}</span></p>
     </section>`;
 }
 
 function Commands({commands, shown, preview}) {
   const text = [...commands.slice(-6), ...(shown ? [shown.command] : [])];
+  if (text.length === 0) return null;
   return html`
     <section class="commands">
       <h2>The same by command line</h2>
@@ -227,6 +244,7 @@ function Exports({state, act, say}) {
     say('The report is ' + file + '.');
   });
   const link = (name) => html`<a download=${name} href=${'/files/' + encodeURIComponent(name)}>${name}</a>`;
+  if (!state.record && !state.model) return null;
   const reports = state.files.filter((f) => f.name.endsWith('.html')).slice(-3);
   return html`
     <section class="exports"><h2>Take away</h2>
@@ -249,6 +267,17 @@ function AddEffect({effects, act, disabled}) {
         <option value="">choose: it gets a typical size</option>
         ${absent.map((e) => html`<option value=${e.name} title=${e.equation}>${e.name}</option>`)}
       </select></label>`;
+}
+
+function useMedia(query) {
+  const [list] = useState(() => matchMedia(query));
+  const [matches, set] = useState(list.matches);
+  useEffect(() => {
+    const change = () => set(list.matches);
+    list.addEventListener('change', change);
+    return () => list.removeEventListener('change', change);
+  }, []);
+  return matches;
 }
 
 export function Workbench({state, progress}) {
@@ -275,6 +304,10 @@ export function Workbench({state, progress}) {
   };
   useEffect(() => change({}), [state.model, state.trial, state.record]);
   const run = (what, body = {}) => act(() => post(what, body));
+  // Without a third column it stands below the verdict.
+  const narrow = useMedia('(max-width: 1180px)');
+  const result = html`<${Result} result=${state.result} run=${run} running=${state.running} />`;
+  const node = state.lineage.find((one) => one.model === state.model);
   return html`
     <main class="workbench">
       <div class="left">
@@ -287,24 +320,25 @@ export function Workbench({state, progress}) {
       <div class="middle">
         ${message && html`<p class="message" role="alert">${message}
           <button class="plain" aria-label="close" onClick=${() => say('')}>×</button></p>`}
-        ${!state.shown && html`<p class="welcome">Choose a record and a model: the page shows where the
-          model fails, and finds out what it misses.</p>`}
+        <${Welcome} state=${state} />
         <${Verdict} shown=${state.shown} trial=${state.trial} running=${state.running} act=${act}
                     selected=${plots.selected} select=${plots.select} />
         <${Progress} progress=${progress} running=${state.running} cancel=${() => run('cancel')} />
+        ${narrow && result}
         <${SideBySide} beside=${state.beside} />
         <${Bands} ignored=${state.ignored} act=${act} />
         ${plots.view}
         <${Laws} state=${state} />
       </div>
       <div class="right">
-        <${Result} result=${state.result} run=${run} running=${state.running} />
+        ${!narrow && result}
         <${Ladder} state=${state} open=${(name) => run('model', {name})}
                    beside=${(name) => run('beside', {name})} />
         ${state.model && html`<section class="next">
           <h2>Step by hand</h2>
           <${AddEffect} effects=${state.effects} act=${act} disabled=${state.running} />
-          <p class="row"><button disabled=${state.running} onClick=${() => run('undo')}>
+          <p class="row"><button disabled=${state.running || !(state.trial || (node && node.parent))}
+                                  onClick=${() => run('undo')}>
             ${state.trial ? 'Undo the trial' : 'Back one model'}</button></p>
         </section>`}
         <${Commands} commands=${state.commands} shown=${state.shown}
