@@ -146,27 +146,15 @@ void Study::show(Open next, bool saves) {
   note_errors(next, next.trial, tried);
   if (saves) save_session(folder_, next);
   open_ = std::move(next);
-  keep_text(open_.model);
-  keep_text(open_.trial);
+  kept_.keep(folder_, open_.model);
+  kept_.keep(folder_, open_.trial);
   accepted_ = std::move(accepted);
   tried_ = std::move(tried);
   beside_ = std::move(beside);
 }
 
-void Study::keep_text(const std::string& model) {
-  if (model.empty()) return;
-  std::ifstream in(folder_.path_of(model), std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (in.good() && !text.empty()) kept_[model] = std::move(text);
-}
-
 void Study::restore() {
-  for (const auto& [model, text] : kept_) {
-    const std::string path = folder_.path_of(model);
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) continue;
-    config::record::write_whole(path, text);
-  }
+  kept_.restore(folder_);
   save_session(folder_, open_);
 }
 

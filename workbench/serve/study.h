@@ -16,6 +16,7 @@
 #include "workbench/diagnose/request.h"
 #include "workbench/fit/request.h"
 #include "workbench/model/kinds.h"
+#include "workbench/serve/kept_models.h"
 #include "workbench/serve/lineage.h"
 #include "workbench/serve/session_file.h"
 #include "workbench/serve/session_folder.h"
@@ -119,12 +120,11 @@ class Study {
   [[nodiscard]] nlohmann::ordered_json side_by_side() const;
   /// `changed`: the curves of a model with other values, alone; null: everything.
   [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
-  void keep_text(const std::string& model);
 
   const SessionFolder& folder_;
   std::string notice_;  ///< why the session is not the saved one; empty: it is
   Open open_;
-  std::map<std::string, std::string> kept_;  ///< text of each model that was shown
+  KeptModels kept_;
   std::optional<Shown> accepted_, tried_, beside_;
 };
 
