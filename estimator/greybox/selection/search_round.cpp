@@ -209,7 +209,8 @@ ModelStage with(const ModelStage& stage, const Candidate& candidate) {
   return next;
 }
 
-Round single_round(const SearchContext& context, const ModelStage& stage, int number) {
+Round single_round(const SearchContext& context, const ModelStage& stage, int number,
+                   double within_m) {
   Round round;
   round.before = stage;
   std::vector<plant_sim::EffectInfo> effects;
@@ -224,6 +225,10 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
       context, stage, effects, [&](const std::string& effect) { reporter.on_screened(effect); });
   round.screening_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (screened.empty() ||
+      !(screened.front().expected_ratio * stage.fitted.training_rms_m < within_m)) {
+    return round;
+  }
   reporter.expect(screened);
   const bool at_floor =
       stage.fitted.validation_rms_m < kAtFloor * context.problem.data.noise_floor_m;

@@ -1,6 +1,7 @@
 // One round of the search: every absent effect added to a stage, best first.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "estimator/greybox/selection/structure_search.h"
@@ -12,7 +13,9 @@ inline constexpr int kQuickIterations = 8;
 /// Largest probability of chance of a gain, unless the gain is large.
 inline constexpr double kChance = 0.01;
 
-[[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number);
+/// Without candidates where the linear estimate of none leaves less than `within_m`.
+[[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number,
+                                 double within_m = std::numeric_limits<double>::infinity());
 /// Pairs of the most promising effects of a round.
 [[nodiscard]] std::vector<Candidate> pair_round(const SearchContext& context, const Round& singles);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "estimator/greybox/selection/backward_elimination.h"
@@ -78,11 +79,14 @@ void try_pairs(const SearchContext& context, const ModelStage& stage, Round& rou
   }
 }
 
-/// Rounds until the branch has `most` effects; false when nothing helps any more.
+/// Rounds until the branch has `most` effects; false when nothing helps any more, or when the
+/// linear estimate of none leaves less than `within_m`.
 bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pairs_too,
-                   std::size_t most = kMostEffects) {
+                   std::size_t most = kMostEffects,
+                   double within_m = std::numeric_limits<double>::infinity()) {
   while (branch.stage.added.size() < most && !context.cancelled()) {
-    Round round = single_round(context, branch.stage, static_cast<int>(branch.rounds.size()) + 1);
+    Round round =
+        single_round(context, branch.stage, static_cast<int>(branch.rounds.size()) + 1, within_m);
     if (round.candidates.empty()) return false;
     // candidates that cannot be taken go last
     std::stable_partition(
@@ -221,9 +225,17 @@ SearchStart start_search(const SearchContext& context) {
   start.first = first_stage(context);
   start.preview_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   start.branch.stage = start.first;
-  extend_branch(context, start.branch, false, kBeforePairSearch);
+  if (extend_branch(context, start.branch, false, 1)) {
+    // simulations know nothing of a disturbance: beside one, the likelihood has to find the second
+    extend_branch(context, start.branch, false, kBeforePairSearch,
+                  kNearFloor * context.problem.data.noise_floor_m);
+  }
   if (!start.branch.rounds.empty()) start.preview_s += start.branch.rounds.front().screening_s;
   return start;
+}
+
+void add_second_effect(const SearchContext& context, SearchStart& start) {
+  if (!start.branch.stalled) extend_branch(context, start.branch, false, kBeforePairSearch);
 }
 
 StructureSearch abandon_search(const SearchContext& context, const SearchStart& start) {
@@ -238,6 +250,7 @@ StructureSearch abandon_search(const SearchContext& context, const SearchStart& 
 
 void extend_search(const SearchContext& context, SearchStart& start) {
   CrossValidation halves(context);
+  add_second_effect(context, start);
   if (start.branch.stage.fitted.validation_rms_m >
       kNearFloor * context.problem.data.noise_floor_m) {
     if (start.branch.stalled) return;

@@ -84,7 +84,7 @@ struct SearchBranch {
   bool stalled = false;  ///< nothing helped in the last of the rounds
 };
 
-/// The beginning of a search: up to kBeforePairSearch effects one after another.
+/// The beginning of a search: one effect, and a second where it promises to come near the noise.
 struct SearchStart {
   double nominal_rms_m = 0.0;
   ModelStage first;  ///< the model as given with its parameters fitted
@@ -92,6 +92,8 @@ struct SearchStart {
   double preview_s = 0.0;
 };
 [[nodiscard]] SearchStart start_search(const SearchContext& context);
+/// A second effect beside the first, where one helps at all.
+void add_second_effect(const SearchContext& context, SearchStart& start);
 /// Further effects, pairs of effects and other beginnings, as far as they lead.
 void extend_search(const SearchContext& context, SearchStart& start);
 /// The model that the search has come to. Where noise does not explain what it leaves, its effects

@@ -113,6 +113,15 @@ TEST(SingleRound, RanksTheHiddenEffectFirstAndTellsHowItGoes) {
   EXPECT_EQ(told.back().round, 1);
 }
 
+TEST(SingleRound, FitsNothingWhereNoEffectPromisesEnough) {
+  const SearchContext context =
+      diagnose_test::servo_context({.rate_mps = diagnose_test::with_offset(0.06)});
+  const ModelStage first = first_stage(context);
+  const double floor_m = context.problem.data.noise_floor_m;
+  EXPECT_FALSE(single_round(context, first, 1, 5.0 * floor_m).candidates.empty());
+  EXPECT_TRUE(single_round(context, first, 1, 0.5 * floor_m).candidates.empty());
+}
+
 TEST(SingleRound, LeavesOutWhatIsInTheModelAlready) {
   const SearchContext context =
       diagnose_test::servo_context({.rate_mps = diagnose_test::with_offset(0.06)});

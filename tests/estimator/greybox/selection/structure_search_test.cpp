@@ -52,6 +52,20 @@ TEST(StructureSearch, FindsTwoEffectsOneAfterTheOther) {
   EXPECT_FALSE(search.interrupted);
 }
 
+// Beside a disturbance the likelihood finds what simulations do not; they ask for a second effect
+// when that has failed.
+TEST(StructureSearch, LeavesASecondEffectForLaterWhereNoneComesNearTheNoise) {
+  // the second effect helps, and far more than it can explain remains
+  const SearchContext context = servo_context({.rate_mps = [](double u_V, double y_m, double t_s) {
+    return with_offset_and_band(0.06, 0.1)(u_V, y_m, t_s) + 2e-3 * std::sin(29.0 * t_s);
+  }});
+  SearchStart start = start_search(context);
+  EXPECT_EQ(start.branch.stage.added.size(), 1U);
+  EXPECT_FALSE(start.branch.stalled);
+  add_second_effect(context, start);
+  EXPECT_THAT(start.branch.stage.added, UnorderedElementsAre("null_bias", "deadband"));
+}
+
 TEST(StructureSearch, EndsWithTheBestSoFarWheneverItIsCancelled) {
   SearchContext context =
       servo_context({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
