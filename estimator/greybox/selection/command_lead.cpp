@@ -72,7 +72,7 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
   options.cancel = context.options.cancel;
   const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
   std::array<FitSummary, kLeads_samples.size()> fits;
-  in_parallel(fits.size(), context.options.threads, [&](std::size_t i) {
+  const auto fit_lead = [&](std::size_t i) {
     FitDataset data = context.problem.data;
     advance_command(data, kLeads_samples[i]);
     FitOptions effort = options;
@@ -83,7 +83,11 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
       if (!(fits[i].training_rms_m < stage.fitted.training_rms_m)) break;
       start = fits[i].theta;
     }
-  });
+  };
+  // on the way to every lead the error falls
+  fit_lead(0);
+  if (!(fits[0].training_rms_m < stage.fitted.training_rms_m)) return {};
+  in_parallel(fits.size() - 1, context.options.threads, [&](std::size_t i) { fit_lead(i + 1); });
   const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
     return a.training_rms_m < b.training_rms_m || std::isnan(b.training_rms_m);
   });
