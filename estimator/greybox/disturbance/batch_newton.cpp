@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace estimator::greybox::disturbance {
 namespace {
@@ -20,41 +22,54 @@ struct Quadratic {
   Matrix curvature;
 };
 
-/// Slopes, and curvatures along the coordinates; those between two of them are kept.
-void set_along(const BatchFunction& function, const Minimum& centre, Quadratic& local) {
-  std::vector<SearchPoint> points;
+using Points = std::vector<SearchPoint>;
+using Values = std::span<const double>;
+
+Points along(const SearchPoint& centre) {
+  Points points;
   for (Index i = 0; i < kSize; ++i) {
-    points.push_back(centre.at + kDifference * SearchPoint::Unit(i));
-    points.push_back(centre.at - kDifference * SearchPoint::Unit(i));
+    points.push_back(centre + kDifference * SearchPoint::Unit(i));
+    points.push_back(centre - kDifference * SearchPoint::Unit(i));
   }
-  const std::vector<double> values = function(points);
+  return points;
+}
+
+Points between(const SearchPoint& centre) {
+  Points points;
+  for (Index i = 0; i < kSize; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      points.push_back(centre + kDifference * (SearchPoint::Unit(i) + SearchPoint::Unit(j)));
+    }
+  }
+  return points;
+}
+
+/// Slopes, and curvatures along the coordinates; those between two of them are kept.
+void set_along(Values values, double centre, Quadratic& local) {
   for (Index i = 0; i < kSize; ++i) {
     const double above = values[static_cast<std::size_t>(2 * i)];
     const double below = values[static_cast<std::size_t>(2 * i + 1)];
     local.slope[i] = (above - below) / (2.0 * kDifference);
-    local.curvature(i, i) = (above - 2.0 * centre.value + below) / (kDifference * kDifference);
+    local.curvature(i, i) = (above - 2.0 * centre + below) / (kDifference * kDifference);
   }
 }
 
 /// Curvatures between two coordinates, from those along them.
-void set_between(const BatchFunction& function, const Minimum& centre, Quadratic& local) {
-  std::vector<SearchPoint> points;
-  for (Index i = 0; i < kSize; ++i) {
-    for (Index j = 0; j < i; ++j) {
-      points.push_back(centre.at + kDifference * (SearchPoint::Unit(i) + SearchPoint::Unit(j)));
-    }
-  }
-  const std::vector<double> values = function(points);
-  const auto along = [&](Index i) {
+void set_between(Values values, double centre, Quadratic& local) {
+  const auto on_axis = [&](Index i) {
     return kDifference * (local.slope[i] + 0.5 * kDifference * local.curvature(i, i));
   };
   std::size_t next = 0;
   for (Index i = 0; i < kSize; ++i) {
     for (Index j = 0; j < i; ++j) {
       local.curvature(i, j) = local.curvature(j, i) =
-          (values[next++] - centre.value - along(i) - along(j)) / (kDifference * kDifference);
+          (values[next++] - centre - on_axis(i) - on_axis(j)) / (kDifference * kDifference);
     }
   }
+}
+
+void append_to(Points& points, const Points& more) {
+  points.insert(points.end(), more.begin(), more.end());
 }
 
 /// Without the coordinates that a bound keeps from descending.
@@ -89,24 +104,39 @@ std::vector<SearchPoint> damped_steps(const Quadratic& local) {
 }  // namespace
 
 Minimum minimise(const BatchFunction& function, const Minimum& start, const SearchBounds& bounds,
-                 double enough) {
+                 double enough, Lookahead lookahead) {
+  constexpr std::size_t kAlong = 2 * kSize;
   Minimum best = start;
   Quadratic local;
-  int known = -1;  ///< step for which the curvatures between coordinates were found
+  int known = -1;             ///< step for which the curvatures between coordinates were found
+  std::vector<double> ahead;  ///< values along the coordinates about `best`; empty: not known
   for (int i = 0; i < kMostSteps; ++i) {
-    set_along(function, best, local);
-    if (known < 0) set_between(function, best, local);
+    Points about = along(best.at);
+    if (known < 0) append_to(about, between(best.at));
+    if (known < 0 || ahead.empty()) ahead = function(about);
+    set_along(Values(ahead).first(kAlong), best.value, local);
+    if (known < 0) set_between(Values(ahead).subspan(kAlong), best.value, local);
     if (known < 0) known = i;
+    ahead.clear();
     const Quadratic free = free_of_bounds(best.at, bounds, local);
-    std::vector<SearchPoint> points = damped_steps(free);
+    Points points = damped_steps(free);
+    const std::size_t steps = points.size();
     if (known == i && !(-free.slope.dot(points.front()) > enough)) break;
     for (SearchPoint& point : points) {
       point = (best.at + point).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
     }
+    // the step without damping is the likeliest to be taken
+    if (lookahead == Lookahead::yes) append_to(points, along(points.front()));
     const std::vector<double> values = function(points);
-    const auto least = std::min_element(values.begin(), values.end());
+    const auto least =
+        std::min_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(steps));
     const double gained = best.value - *least;
-    if (gained > 0.0) best = {points[static_cast<std::size_t>(least - values.begin())], *least};
+    if (gained > 0.0) {
+      best = {points[static_cast<std::size_t>(least - values.begin())], *least};
+      if (least == values.begin()) {
+        ahead.assign(values.begin() + static_cast<std::ptrdiff_t>(steps), values.end());
+      }
+    }
     if (gained > enough) continue;
     if (known == i) break;
     known = -1;  // curvatures of another place may have misled it

@@ -21,14 +21,20 @@ struct Minimum {
   double value = 0.0;
 };
 
-/// Values at up to eight points, also outside the bounds by kDifference.
+/// Values at points, of which eight at a time cost hardly more than one; also outside the bounds by
+/// kDifference.
 using BatchFunction = std::function<std::vector<double>(const std::vector<SearchPoint>&)>;
 
 /// Half the distance over which differences are taken.
 inline constexpr double kDifference = 0.1;
 
+/// Are the values about the likeliest step asked for together with the step's? The minimum is the
+/// same; it takes fewer calls, with more points, of which some may not be needed.
+enum class Lookahead { no, yes };
+
 /// From `start`, within the bounds; ends where a step gains less than `enough`.
 [[nodiscard]] Minimum minimise(const BatchFunction& function, const Minimum& start,
-                               const SearchBounds& bounds, double enough);
+                               const SearchBounds& bounds, double enough,
+                               Lookahead lookahead = Lookahead::no);
 
 }  // namespace estimator::greybox::disturbance

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "estimator/greybox/disturbance/batch_newton.h"
 #include "estimator/greybox/disturbance/simulated_lines.h"
@@ -28,8 +29,6 @@ constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
 /// Largest step of a line's frequency, in bins of the longest record.
 constexpr double kMostStep_bins = 0.25;
-/// Fall of -2 log L below which a step of the search is its last.
-constexpr double kEnough = 0.1;
 
 /// Logarithms of the disturbance's intensity, its standard deviation times the root of its corner,
 /// of its corner, walk and sensor noise. Above the corner the intensity alone is seen.
@@ -115,23 +114,43 @@ class Likelihood {
       Dataset& plain = records_.emplace_back(record);
       plain.innovations.reset();
     }
+    runs_.resize(threads > 1 ? kMostGroups : 1);
     for (const Dataset& record : records_) {
-      line_m_.push_back(known_lines_m(model, record, runs_.size(), parameters, theta, noise));
-      runs_.emplace_back(model, record, parameters);
+      line_m_.push_back(known_lines_m(model, record, line_m_.size(), parameters, theta, noise));
+      for (std::vector<ObserverSimulation>& runs : runs_) {
+        runs.emplace_back(model, record, parameters);
+      }
     }
   }
 
-  /// -2 log L of up to eight points.
+  /// -2 log L of points, at most sixteen.
   std::vector<double> operator()(const std::vector<Point>& points) {
     std::vector<double> cost(points.size(), 0.0);
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const std::size_t groups = (points.size() + kTogether - 1) / kTogether;
+    const unsigned own = groups > 1 ? 1 : threads_;
+    in_parallel(groups, threads_, [&](std::size_t group) {
+      const std::size_t from = group * kTogether;
+      const std::size_t count = std::min(kTogether, points.size() - from);
+      evaluate(std::span(points).subspan(from, count), runs_[std::min(group, runs_.size() - 1)],
+               own, std::span(cost).subspan(from, count));
+    });
+    return cost;
+  }
+
+ private:
+  static constexpr std::size_t kTogether = 8;
+  static constexpr std::size_t kMostGroups = 2;
+
+  void evaluate(std::span<const Point> points, std::vector<ObserverSimulation>& runs,
+                unsigned threads, std::span<double> cost) const {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
       std::vector<NoiseParameters> noise;
       for (const Point& point : points) noise.push_back(noise_of(point));
       std::vector<KalmanGains> gains =
           kalman_gains((*models_)[r], records_[r], noise, data_->noise_floor_m);
       std::vector<MatrixXd> lines(points.size());
       if (!lines_->empty()) {
-        in_parallel(points.size(), threads_, [&](std::size_t i) {
+        in_parallel(points.size(), threads, [&](std::size_t i) {
           lines[i] = basis_of(line_responses((*models_)[r], records_[r], gains[i].gains, *lines_));
         });
       }
@@ -142,8 +161,8 @@ class Likelihood {
         each.back().line_m = line_m_[r];
       }
       MatrixXd residuals_m;
-      runs_[r].innovations(theta_->replicate(1, static_cast<Index>(points.size())), each,
-                           residuals_m);
+      runs[r].innovations(theta_->replicate(1, static_cast<Index>(points.size())), each,
+                          residuals_m);
       for (std::size_t i = 0; i < points.size(); ++i) {
         const auto e = residuals_m.col(static_cast<Index>(i));
         double square_m2 = e.squaredNorm();
@@ -153,18 +172,16 @@ class Likelihood {
         cost[i] += std::isfinite(value) ? value : 1e300;
       }
     }
-    return cost;
   }
 
- private:
   const FitDataset* data_;
   const VectorXd* theta_;
   const Linearisations* models_;
   const std::vector<SpectralLine>* lines_;
   unsigned threads_;
   std::vector<Dataset> records_;
-  std::vector<ObserverSimulation> runs_;
-  std::vector<VectorXd> line_m_;  ///< per record
+  std::vector<std::vector<ObserverSimulation>> runs_;  ///< per group of points, per record
+  std::vector<VectorXd> line_m_;                       ///< per record
 };
 
 }  // namespace
@@ -292,7 +309,7 @@ double minus_two_log_likelihood(const plant_sim::ModelFile& model, const FitData
 NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset& data,
                              const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                              const Linearisations& models, const NoiseModel& start,
-                             unsigned threads) {
+                             unsigned threads, double enough) {
   Likelihood likelihood(model, data, parameters, theta, models, start, threads);
   const double floor_m = data.noise_floor_m;
   const double observer = kObserver_per_s * data.sample_time_s;
@@ -317,9 +334,9 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   if (start.noise.sensor_m > 0.0) points.back() = within(point_of(start.noise));
   std::vector<double> costs = likelihood(points);
   const auto least = std::min_element(costs.begin(), costs.end());
-  const Minimum best =
-      minimise([&](const std::vector<Point>& at) { return likelihood(at); },
-               {points[static_cast<std::size_t>(least - costs.begin())], *least}, bounds, kEnough);
+  const Minimum best = minimise([&](const std::vector<Point>& at) { return likelihood(at); },
+                                {points[static_cast<std::size_t>(least - costs.begin())], *least},
+                                bounds, enough, threads > 1 ? Lookahead::yes : Lookahead::no);
   return {{noise_of(best.at), start.lines, start.waves}, best.value};
 }
 

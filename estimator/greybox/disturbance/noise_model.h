@@ -72,12 +72,16 @@ struct NoiseEstimate {
                                               const Linearisations& models,
                                               const NoiseModel& noise);
 
-/// `start`: lines are kept, its noise is one of the starts when its sensor_m is positive.
+/// Fall of -2 log L below which a step of the search for a noise model is its last.
+inline constexpr double kLastNoiseStep = 0.1;
+
+/// `start`: lines are kept, its noise is one of the starts when its sensor_m is positive. `enough`:
+/// as kLastNoiseStep.
 [[nodiscard]] NoiseEstimate estimate_noise(const plant_sim::ModelFile& model,
                                            const FitDataset& data,
                                            const std::vector<FreeParameter>& parameters,
                                            const Eigen::VectorXd& theta,
                                            const Linearisations& models, const NoiseModel& start,
-                                           unsigned threads);
+                                           unsigned threads, double enough = kLastNoiseStep);
 
 }  // namespace estimator::greybox::disturbance

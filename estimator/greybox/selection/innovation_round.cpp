@@ -198,11 +198,18 @@ class RoundTrials {
 
 void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
   for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
-    for (const disturbance::LineSite site : disturbance::sites_of(stage.linear.front())) {
-      if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
-      InnovationStage other =
-          settled(plain, stage.model, moved(stage.noise, i, site), 1, wide(plain.options.threads));
-      if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
+    std::vector<disturbance::LineSite> sites = disturbance::sites_of(stage.linear.front());
+    std::erase(sites, stage.noise.lines[i].site);
+    std::vector<InnovationStage> others(sites.size());
+    in_parallel(sites.size(), plain.options.threads, [&](std::size_t k) {
+      others[k] =
+          settled(plain, stage.model, moved(stage.noise, i, sites[k]), 1, SimulationWidth{});
+    });
+    const auto best = std::min_element(
+        others.begin(), others.end(),
+        [](const auto& a, const auto& b) { return a.minus_two_log < b.minus_two_log; });
+    if (best != others.end() && best->minus_two_log < stage.minus_two_log - 2.0) {
+      stage = std::move(*best);
     }
   }
 }

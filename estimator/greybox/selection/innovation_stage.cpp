@@ -22,6 +22,8 @@ constexpr double kTolerance = 1e-5;
 constexpr double kFarBehind = 100.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
+/// Fall of -2 log L by a step of a trial's noise model below which it is the last.
+constexpr double kLastTrialNoiseStep = 1.0;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
 constexpr double kSettled = 1.0;
 
@@ -114,7 +116,8 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
     const auto estimate_noise = [&] {
       stage.noise =
           disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
-                                      fitted.theta, stage.linear, stage.noise, width.threads)
+                                      fitted.theta, stage.linear, stage.noise, width.threads,
+                                      turns > 1 ? disturbance::kLastNoiseStep : kLastTrialNoiseStep)
               .noise;
     };
     stage.linear = disturbance::linearise(plain.problem.model, stage.context.problem.data,

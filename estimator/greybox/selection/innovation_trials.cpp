@@ -125,23 +125,37 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
     return expected_nats(stage, result) < kHopeless_nats;
   });
   screened.resize(std::min(screened.size(), kFitted));
-  std::vector<InnovationTrial> trials(screened.size());
-  in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
-    InnovationTrial& trial = trials[i];
-    trial.candidate.effect = screened[i].effect;
-    trial.candidate.gain_nats = -std::numeric_limits<double>::infinity();
-    for (const VectorXd& start : screened[i].starts) {
-      if (context.cancelled()) return;
-      FitSummary fitted = fit_innovations(context, {screened[i].parameters, start},
-                                          SimulationWidth{}, InnovationFit::quick);
-      const double penalty = penalty_nats(fitted, stage.model.fitted);
-      const double gain = 0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
-      if (!(gain > trial.candidate.gain_nats)) continue;
-      trial.candidate.gain_nats = gain;
-      trial.penalty_nats = penalty;
-      trial.starts = {with_effect(stage.model, screened[i].effect, std::move(fitted))};
-    }
+  struct Start {
+    std::size_t effect;
+    const VectorXd* theta;
+    FitSummary fitted;
+  };
+  std::vector<Start> starts;  // all at once: some fits take many times as long as others
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    for (const VectorXd& theta : screened[i].starts) starts.push_back({i, &theta, {}});
+  }
+  in_parallel(starts.size(), context.options.threads, [&](std::size_t k) {
+    if (context.cancelled()) return;
+    starts[k].fitted =
+        fit_innovations(context, {screened[starts[k].effect].parameters, *starts[k].theta},
+                        SimulationWidth{}, InnovationFit::quick);
   });
+  std::vector<InnovationTrial> trials(screened.size());
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    trials[i].candidate.effect = screened[i].effect;
+    trials[i].candidate.gain_nats = -std::numeric_limits<double>::infinity();
+  }
+  for (Start& start : starts) {
+    if (start.fitted.parameters.empty()) continue;  // cancelled
+    InnovationTrial& trial = trials[start.effect];
+    const double penalty = penalty_nats(start.fitted, stage.model.fitted);
+    const double gain =
+        0.5 * (before - squares(start.fitted, floor_m) - prior_cost(start.fitted)) - penalty;
+    if (!(gain > trial.candidate.gain_nats)) continue;
+    trial.candidate.gain_nats = gain;
+    trial.penalty_nats = penalty;
+    trial.starts = {with_effect(stage.model, trial.candidate.effect, std::move(start.fitted))};
+  }
   return trials;
 }
 

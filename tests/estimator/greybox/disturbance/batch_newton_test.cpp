@@ -11,11 +11,12 @@ namespace {
 constexpr double kEnough = 1e-4;
 const SearchBounds kWide{SearchPoint::Constant(-10.0), SearchPoint::Constant(10.0)};
 
-/// The function at each of the points, of which there are at most eight.
+/// The function at each of the points, of which there are at most sixteen; counts its calls.
 template <class F>
-BatchFunction batch(const F& f) {
-  return [f](const std::vector<SearchPoint>& points) {
-    EXPECT_LE(points.size(), 8U);
+BatchFunction batch(const F& f, int* calls = nullptr) {
+  return [=](const std::vector<SearchPoint>& points) {
+    EXPECT_LE(points.size(), 16U);
+    if (calls != nullptr) ++*calls;
     std::vector<double> values;
     for (const SearchPoint& point : points) values.push_back(f(point));
     return values;
@@ -66,6 +67,19 @@ TEST(BatchNewton, GoesDownhillFromASaddle) {
   const Minimum found = from(SearchPoint(0.2, 1.0, -1.0, 0.5), f);
   EXPECT_NEAR(std::abs(found.at[0]), 1.0, 0.02);
   EXPECT_NEAR(found.value, 0.0, 10.0 * kEnough);
+}
+
+TEST(BatchNewton, ComesToTheSameMinimumInFewerCallsLookingAhead) {
+  const SearchPoint start(-4.0, -4.0, 0.0, 4.0);
+  int plain_calls = 0;
+  int calls = 0;
+  const Minimum plain =
+      minimise(batch(valley, &plain_calls), {start, valley(start)}, kWide, kEnough);
+  const Minimum ahead =
+      minimise(batch(valley, &calls), {start, valley(start)}, kWide, kEnough, Lookahead::yes);
+  EXPECT_EQ(ahead.value, plain.value);
+  EXPECT_EQ(ahead.at, plain.at);
+  EXPECT_LT(calls, plain_calls);
 }
 
 }  // namespace
