@@ -135,9 +135,25 @@ bool goes_on(FieldKind column, const CellUnits& cells, FieldKind kind, bool has_
   return column == kind;
 }
 
+/// True where the first rows show a setting or a name ("24V", "1A" and "2A"), not a measurement:
+/// hardly two values, and never zero.
+bool is_label(const std::vector<double>& head) {
+  constexpr std::size_t kFewestRows = 8;
+  constexpr std::size_t kMostLabels = 2;
+  if (head.size() < kFewestRows) return false;
+  std::set<double> values;
+  for (const double value : head) {
+    if (value == 0.0) return false;
+    if (!std::isnan(value)) values.insert(value);
+    if (values.size() > kMostLabels) return false;
+  }
+  return true;
+}
+
 /// Columns whose cells are numbers with units become columns of numbers.
 void take_units(TextTable& table) {
   for (std::size_t c = 0; c < table.columns; ++c) {
+    if (table.kinds[c] == FieldKind::text && is_label(table.head[c])) table.cell_units[c] = {};
     if (table.kinds[c] == FieldKind::text && table.cell_units[c].any()) {
       table.kinds[c] = FieldKind::number;
     }

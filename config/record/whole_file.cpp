@@ -14,7 +14,10 @@ namespace config::record {
 namespace {
 
 /// Zero, or the error of a file system that can sync.
-int sync_error(int file) { return fsync(file) != 0 && errno != EINVAL ? errno : 0; }
+int sync_error(int file) {
+  if (fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) return 0;
+  return errno;
+}
 
 /// Writes `text` and, to a regular file, until it is on the disk. Zero, or the error.
 int write_to(const std::filesystem::path& file, std::string_view text, bool special) {
@@ -24,6 +27,7 @@ int write_to(const std::filesystem::path& file, std::string_view text, bool spec
   int error = 0;
   while (error == 0 && !text.empty()) {
     const ssize_t written = write(out, text.data(), text.size());
+    if (written == 0) error = EIO;  // would be so for ever
     if (written >= 0) {
       text.remove_prefix(static_cast<std::size_t>(written));
     } else if (errno != EINTR) {

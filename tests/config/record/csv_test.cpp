@@ -196,6 +196,23 @@ TEST(Csv, ReadsUnitsThatStandInTheCells) {
   EXPECT_EQ(read("t_s ; u_V ; y_m\n0 ; 1 ; 2\n1 ; 1 ; 2\n2 ; 1 ; 2\n").size(), 3U);
 }
 
+// Settings and names: hardly two values, and never zero.
+TEST(Csv, LeavesLabelsThatLookLikeUnitsOut) {
+  std::string text = "t_s,u_V,y_mm,Phase,Supply\n";
+  for (int k = 0; k < 40; ++k) {
+    text += std::to_string(k) + ",1.5,3.2," + (k % 2 == 0 ? "1A," : "2A,") +
+            (k < 30 ? "24V\n" : "off\n");
+  }
+  const Record labelled = read(text);
+  EXPECT_EQ(labelled.size(), 40U);
+  EXPECT_TRUE(labelled.further.empty());
+  // a measurement comes through zero, or has many values
+  std::string measured = "t_s,u_V,y_mm,Load\n";
+  for (int k = 0; k < 40; ++k)
+    measured += std::to_string(k) + ",1.5,3.2," + (k < 30 ? "0N\n" : "5N\n");
+  EXPECT_EQ(read(measured).further.size(), 1U);
+}
+
 TEST(Csv, RefusesUnitsInCellsThatContradictOneAnotherOrTheHeader) {
   const std::string rows = "0;4.5 V;3.2 mm\n0.1;4.5 V;3.2 mm\n";
   expect_bad(
@@ -214,9 +231,9 @@ TEST(Csv, RefusesUnitsInCellsThatContradictOneAnotherOrTheHeader) {
   // beyond the lines that tell the form
   std::string late = "Time [s];Valve;Position [mm]\n";
   for (int k = 0; k < 1200; ++k) {
-    late += std::to_string(k) + (k < 1150 ? ";12.5 %;3\n" : ";12.5 mV;3\n");
+    late += std::to_string(k) + ';' + std::to_string(k % 5) + (k < 1150 ? " %;3\n" : " mV;3\n");
   }
-  expect_bad(late, ":1152", "column Valve: '12.5 mV' is in mV, the cells before are in %");
+  expect_bad(late, ":1152", "column Valve: '0 mV' is in mV, the cells before are in %");
 }
 
 TEST(Csv, RefusesMagnitudesThatNoMachineHas) {
