@@ -62,6 +62,24 @@ int newest_version(const std::vector<fs::path>& files) {
   return newest;
 }
 
+namespace {
+
+/// True where the file has that text again.
+bool write_back(const fs::path& file, const std::string& text) {
+  try {
+    if (read_whole(file) != text) config::record::write_whole(file, text);
+  } catch (const Error&) {
+    // read again below: a text that cannot be synced stands in the file all the same
+  }
+  try {
+    return read_whole(file) == text;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 int replace(const std::vector<Replacement>& replacements) {
   std::vector<fs::path> files;
   std::vector<std::string> before;
@@ -82,9 +100,14 @@ int replace(const std::vector<Replacement>& replacements) {
       config::record::write_whole(files[done], replacements[done].text);
     }
   } catch (const Error&) {
-    for (std::size_t i = 0; i < done; ++i) config::record::write_whole(files[i], before[i]);
+    bool all = true;  // also the file that failed may be written: its folder was not synced
+    for (std::size_t i = 0; i < std::min(done + 1, files.size()); ++i) {
+      all = write_back(files[i], before[i]) && all;
+    }
     std::error_code ignored;
-    for (const fs::path& file : files) fs::remove(version_of(file, version), ignored);
+    for (const fs::path& file : files) {
+      if (all) fs::remove(version_of(file, version), ignored);
+    }
     throw;
   }
   std::error_code ignored;

@@ -93,6 +93,8 @@ LoadedSession load_session(const SessionFolder& folder) {
   return loaded;
 }
 
+bool session_is_there(const SessionFolder& folder) { return is_there(folder.path_of(kSession)); }
+
 void save_session(const SessionFolder& folder, const SavedSession& saved) {
   ordered_json session{{"record", saved.record},
                        {"model", saved.model},

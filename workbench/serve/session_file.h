@@ -25,6 +25,9 @@ struct LoadedSession {
 /// no change overwrites them. Throws config::schema::RunError where that fails.
 [[nodiscard]] LoadedSession load_session(const SessionFolder& folder);
 
+/// False where session.json is missing, as in a folder that was made anew.
+[[nodiscard]] bool session_is_there(const SessionFolder& folder);
+
 /// Throws config::schema::RunError where session.json cannot be written; a script that cannot is
 /// named on standard error.
 void save_session(const SessionFolder& folder, const SavedSession& session);

@@ -75,6 +75,8 @@ class Site final : public HttpHandler {
   void finish_job(JobResult result, const std::string& parent);
   /// Writes the model of a job, which becomes the trial.
   void take_result(const JobResult& result, const std::string& parent);
+  /// Saves the result that had to wait for the folder.
+  void take_unsaved();
   /// Whether files can be written; what waits for it is then done. `failed`: something was not
   /// written just now.
   void check_folder(bool failed);

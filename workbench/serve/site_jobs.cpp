@@ -60,6 +60,19 @@ void Site::finish_job(JobResult result, const std::string& parent) {
   });
 }
 
+void Site::take_unsaved() {
+  try {
+    take_result(unsaved_->result, unsaved_->parent);
+    last_result_ = unsaved_->result.summary;
+  } catch (const std::exception& failed) {
+    const std::string why = failed.what();
+    trouble_ = folder_.trouble(true);
+    if (!trouble_.empty()) return;
+    last_result_ = {{"kind", "error"}, {"words", why}};
+  }
+  unsaved_.reset();
+}
+
 void Site::take_result(const JobResult& result, const std::string& parent) {
   if (result.model.empty()) return;
   config::record::write_whole(result.model, result.text);
@@ -72,12 +85,10 @@ void Site::check_folder(bool failed) {
   if (trouble_.empty() && !before.empty()) {
     try {
       study_.restore();
-      if (unsaved_) take_result(unsaved_->result, unsaved_->parent);
-      if (unsaved_) last_result_ = unsaved_->result.summary;
-      unsaved_.reset();
     } catch (const config::schema::Error& error) {
       trouble_ = error.what();
     }
+    if (trouble_.empty() && unsaved_) take_unsaved();
   }
   if (trouble_ != before) publish_state();
 }

@@ -154,7 +154,7 @@ void Study::show(Open next, bool saves) {
 }
 
 void Study::restore() {
-  kept_.restore(folder_);
+  if (!session_is_there(folder_)) kept_.restore(folder_);
   save_session(folder_, open_);
 }
 
