@@ -66,15 +66,24 @@ class Dictionary {
         {{name, site, formula, what, std::move(parameters), "", {}}, std::move(variables)});
   }
 
+  /// A position with as few digits as tell it from others of the motion.
+  [[nodiscard]] double place_m(double y_m) const {
+    const double finest_m = 0.01 * rig_.length_m;
+    const double coarse_m = rounded(y_m);
+    if (!(std::abs(coarse_m - y_m) > finest_m)) return coarse_m;
+    return std::stod(
+        fmt::format("{:.{}f}", y_m, static_cast<int>(std::ceil(-std::log10(finest_m)))));
+  }
+
   /// A position about which a law turns.
   [[nodiscard]] FormulaEffect::Parameter rest() const {
     const double reach_m = 10.0 * rig_.length_m;
     return {"rest_m",
             "position at which it is zero",
-            rounded(rig_.centre_m - reach_m),
-            rounded(rig_.centre_m + reach_m),
-            rounded(rig_.centre_m + 0.1 * rig_.length_m),
-            rounded(rig_.centre_m)};
+            place_m(rig_.centre_m - reach_m),
+            place_m(rig_.centre_m + reach_m),
+            place_m(rig_.centre_m + 0.1 * rig_.length_m),
+            place_m(rig_.centre_m)};
   }
 
   void add_forces() {
@@ -101,7 +110,7 @@ class Dictionary {
         {size("coefficient_N_s_per_m3", force_N / (v * y * y), Sign::positive), rest()},
         {"y", "v"});
     add("sloping_damping", "damping that changes along the stroke", "force",
-        fmt::format("coefficient_N_s_per_m2 * v_mps * (y_m - {})", rounded(rig_.centre_m)),
+        fmt::format("coefficient_N_s_per_m2 * v_mps * (y_m - {})", place_m(rig_.centre_m)),
         {size("coefficient_N_s_per_m2", force_N / (v * y), Sign::both)}, {"y", "v"});
     add("stiffening_spring", "spring that stiffens with the cube of its deflection", "force",
         "stiffness_N_per_m3 * (y_m - rest_m)^3",
@@ -185,7 +194,7 @@ class Dictionary {
                    : "leakage that grows as the rod retracts, a worn bore",
           "leakage",
           fmt::format("coefficient_m2ps_per_Pa * (in_Pa - out_Pa) * max({}(y_m - {}), 0)",
-                      outwards ? "" : "-", rounded(rig_.centre_m + (outwards ? -2.0 : 2.0) * y)),
+                      outwards ? "" : "-", place_m(rig_.centre_m + (outwards ? -2.0 : 2.0) * y)),
           {size("coefficient_m2ps_per_Pa", conductance / (2.0 * y), Sign::positive)},
           {"y", "pressure"});
     }
@@ -225,7 +234,7 @@ class Dictionary {
         {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)},
         {"u", "direction"});
     add("gain_along_stroke", "gain that changes along the stroke", "opening",
-        fmt::format("x_m * (1 + slope_ratio * (y_m - {}) / {})", rounded(rig_.centre_m),
+        fmt::format("x_m * (1 + slope_ratio * (y_m - {}) / {})", place_m(rig_.centre_m),
                     rounded(rig_.length_m)),
         {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"y"});
     const double way_m = 4.0 * rig_.length_m;  // a sine moves by 2.8 of its RMS
@@ -261,7 +270,7 @@ class Dictionary {
   void add_readings() {
     const double y = rig_.length_m;
     add("curved_reading", "position sensor whose scale changes along the stroke", "sensor",
-        fmt::format("y_m + curvature_per_m * (y_m - {})^2", rounded(rig_.centre_m)),
+        fmt::format("y_m + curvature_per_m * (y_m - {})^2", place_m(rig_.centre_m)),
         {size("curvature_per_m", 0.01 / y, Sign::both, 30.0)}, {"y"});
   }
 

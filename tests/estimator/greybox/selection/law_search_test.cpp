@@ -49,6 +49,29 @@ TEST(LawDictionary, EachLawCanBeDeclaredOnEachPlantThatHasItsSite) {
   }
 }
 
+// Three digits of 0.3051 m do not tell places of a motion of 0.4 mm apart.
+TEST(LawDictionary, PlacesOfASmallMotionFarFromZeroAreToldApart) {
+  std::vector<double> u_V(2000);
+  std::vector<double> y_m(2000);
+  for (std::size_t k = 0; k < y_m.size(); ++k) {
+    const double t_s = 0.005 * static_cast<double>(k);
+    u_V[k] = std::cos(6.0 * t_s);
+    y_m[k] = 0.3051 + 2e-4 * std::sin(6.0 * t_s);
+  }
+  const FitDataset data = fit_dataset({estimator::greybox::dataset_of(0.005, u_V, y_m)}, {});
+  plant_sim::ModelFile model =
+      plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml");
+  for (const Law& law : law_dictionary(model, data)) {
+    EXPECT_NO_THROW(model.declare(law.effect, "test")) << law.effect.name;
+    for (const auto& parameter : law.effect.parameters) {
+      if (parameter.name != "rest_m") continue;
+      EXPECT_NEAR(parameter.neutral, 0.3051, 1e-5);
+      // a tenth of the motion's RMS of 0.14 mm
+      EXPECT_NEAR(parameter.typical - parameter.neutral, 1.4e-5, 3e-6);
+    }
+  }
+}
+
 /// y' = 0.05 u (1 - 0.1 (u / 2 V)^2).
 double curved_mps(double u_V, double /*y_m*/, double /*t_s*/) {
   return kServoGain * u_V * (1.0 - 0.1 * std::pow(u_V / 2.0, 2));
