@@ -28,8 +28,8 @@ using BatchFunction = std::function<std::vector<double>(const std::vector<Search
 /// Half the distance over which differences are taken.
 inline constexpr double kDifference = 0.1;
 
-/// Are the values about the likeliest step asked for together with the step's? The minimum is the
-/// same; it takes fewer calls, with more points, of which some may not be needed.
+/// Whether the values about the likeliest step are asked for together with the step's. The minimum
+/// is the same; the search takes fewer calls, with more points, of which some may not be needed.
 enum class Lookahead { no, yes };
 
 /// From `start`, within the bounds; ends where a step gains less than `enough`.

@@ -84,7 +84,7 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
       start = fits[i].theta;
     }
   };
-  // on the way to every lead the error falls
+  // the error falls towards a lead from either side, so that the shortest lowers it whichever it is
   fit_lead(0);
   if (!(fits[0].training_rms_m < stage.fitted.training_rms_m)) return {};
   in_parallel(fits.size() - 1, context.options.threads, [&](std::size_t i) { fit_lead(i + 1); });

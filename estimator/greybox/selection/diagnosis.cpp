@@ -143,6 +143,24 @@ bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   return !search.physics_missing();
 }
 
+/// The beginning of a search by simulations: with a second effect too where the first leaves more
+/// than a disturbance, of which simulations know nothing.
+SearchStart begin_search(const SearchContext& context) {
+  SearchStart start = start_search(context);
+  const ModelStage& stage = start.branch.stage;
+  if (stage.added.size() != 1 || start.branch.stalled || is_explained(context, stage) ||
+      context.cancelled()) {
+    return start;
+  }
+  const SearchContext fitted = without_holdouts(context);
+  InnovationSearch left;
+  left.final = settled(fitted, stage, {}, 1, wide(context.options.threads));
+  const bool known = std::isfinite(left.final.minus_two_log);
+  if (known) weigh_remainder(fitted, left);
+  if (!known || left.physics_missing()) add_second_effect(context, start);
+  return start;
+}
+
 /// True where the disturbance is so slow that it may be a drift of the rig.
 bool drifts(const Diagnosis& result, const FitDataset& data) {
   return result.disturbance && result.disturbance->corner_Hz > 0.0 &&
@@ -200,14 +218,14 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     return result;
   }
   SearchContext search = for_search(context);
-  SearchStart start = start_search(search);
+  SearchStart start = begin_search(search);
   if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
     const CommandLead lead = find_command_lead(search, start.branch.stage);
     if (lead.samples > 0.0 && !context.cancelled()) {
       advance_command(context.problem.data, lead.samples);
       context.problem.interpolated_nats = lead.gain_nats;
       search = for_search(context);
-      start = start_search(search);
+      start = begin_search(search);
       result.command_lead_samples = lead.samples;
     }
   }

@@ -225,8 +225,9 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
       context, stage, effects, [&](const std::string& effect) { reporter.on_screened(effect); });
   round.screening_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (screened.empty() ||
-      !(screened.front().expected_ratio * stage.fitted.training_rms_m < within_m)) {
+  const double promised_m =
+      screened.empty() ? 0.0 : screened.front().expected_ratio * stage.fitted.training_rms_m;
+  if (screened.empty() || promised_m > within_m) {
     return round;
   }
   reporter.expect(screened);

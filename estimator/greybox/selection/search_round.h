@@ -13,7 +13,7 @@ inline constexpr int kQuickIterations = 8;
 /// Largest probability of chance of a gain, unless the gain is large.
 inline constexpr double kChance = 0.01;
 
-/// Without candidates where the linear estimate of none leaves less than `within_m`.
+/// The round has no candidates where the linear estimate of none leaves less than `within_m`.
 [[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number,
                                  double within_m = std::numeric_limits<double>::infinity());
 /// Pairs of the most promising effects of a round.
