@@ -11,7 +11,7 @@
 
 namespace config::record {
 
-/// What is known of the rows below the line. Refers to its arguments.
+/// The rows below a line, as far as they were read. Refers to its arguments.
 struct RowsBelow {
   char decimal = '.';
   const std::vector<FieldKind>& kinds;

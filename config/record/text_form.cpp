@@ -264,8 +264,8 @@ class FormFinder {
     form_.header_line = header->line + 1;
   }
 
-  /// Refuses a line above the table that damaged fields keep from being a row. `header`: the line
-  /// of names, where it is another.
+  /// Refuses a line above the table that damaged fields keep from being a row. `header`: another
+  /// line, which has the names; null: there is none.
   void require_no_row(std::size_t line, const std::vector<std::string>& fields,
                       const Candidate* header) const {
     const RowsBelow rows{form_.dialect.decimal, form_.kinds, form_.head, header != nullptr};

@@ -43,7 +43,8 @@ class CellUnits {
 
   [[nodiscard]] const UnitText& unit() const { return unit_; }
   [[nodiscard]] const std::string& first() const { return first_; }
-  [[nodiscard]] std::size_t line() const { return line_; }  ///< of the first cell, from 1
+  /// Line of the first cell with a number, from 1.
+  [[nodiscard]] std::size_t line() const { return line_; }
   /// Line, from 1, of a cell that is a word or has another unit; 0: none.
   [[nodiscard]] std::size_t odd_line() const { return odd_line_; }
   [[nodiscard]] const std::string& odd() const { return odd_; }
@@ -63,7 +64,7 @@ class CellUnits {
   std::string first_;  ///< first cell with a number; empty: none so far
   std::size_t line_ = 0;
   std::string suffix_;
-  UnitText unit_;  ///< of the first cell; text empty: it has none
+  UnitText unit_;  ///< the first cell's; text empty: it has none
   std::size_t odd_line_ = 0;
   std::string odd_;
 };

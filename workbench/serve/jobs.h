@@ -19,7 +19,7 @@ namespace workbench::serve {
 struct JobResult {
   std::string error;               ///< empty: none
   std::string model;               ///< the file to be written, with its path; empty: none
-  std::string text;                ///< of that file
+  std::string text;                ///< the file's content
   std::string what;                ///< "fitted", "+ friction"
   std::string command;             ///< the command line that does the same
   nlohmann::ordered_json summary;  ///< for the page; null: none

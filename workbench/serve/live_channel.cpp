@@ -24,7 +24,8 @@ constexpr std::chrono::seconds kFigures{5};  ///< a comparison over the last hal
 constexpr std::chrono::seconds kRetry{1};
 /// A page that loads itself again finds the last minute, and a trigger as it was.
 constexpr std::chrono::seconds kLinger{15};
-constexpr std::uint64_t kMostNumbers = 20'000;  ///< of a batch; some 200 kB of text
+/// Most numbers in a batch: some 200 kB of text.
+constexpr std::uint64_t kMostNumbers = 20'000;
 
 struct Batch {
   std::vector<StreamId> pages;

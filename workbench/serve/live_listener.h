@@ -71,7 +71,7 @@ class LiveListener final : public live::FeedListener {
     }
     append(point);
   }
-  // What belongs to a sample comes just before it.
+  // The daemon sends pressures and single rods just before the sample that they belong to.
   void on(const spoolwatch::rods_t& rods) override { rods_ = rods; }
   void on(const spoolwatch::pressures_t& pressures) override { pressures_ = pressures; }
   void on(const spoolwatch::estimate_t& e) override {

@@ -28,8 +28,8 @@ using BatchFunction = std::function<std::vector<double>(const std::vector<Search
 /// Half the distance over which differences are taken.
 inline constexpr double kDifference = 0.1;
 
-/// Whether the values about the likeliest step are asked for together with the step's. The minimum
-/// is the same; the search takes fewer calls, with more points, of which some may not be needed.
+/// A search that looks ahead asks for the values about the likeliest step together with the step's:
+/// it comes to the same minimum in fewer calls with more points, some of which it may not need.
 enum class Lookahead { no, yes };
 
 /// From `start`, within the bounds; ends where a step gains less than `enough`.

@@ -11,31 +11,17 @@
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "tests/config/record/csv_text.h"
 #include "tests/config/record/temporary_file.h"
 
 namespace config::record {
 namespace {
 
+using record_test::expect_bad;
+using record_test::kRows;
+using record_test::read;
 using record_test::TemporaryFile;
 using testing::ElementsAre;
-
-Record read(const std::string& content) { return read_record(TemporaryFile(content).path()); }
-
-/// The message names the line and contains `part`; exit 65; one line.
-void expect_bad(const std::string& content, const std::string& place, const std::string& part) {
-  const TemporaryFile file(content);
-  try {
-    (void)read_record(file.path());
-    ADD_FAILURE() << "accepted: " << content;
-  } catch (const schema::DataError& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find(file.path() + place + ": "), 0U) << what;
-    EXPECT_NE(what.find(part), std::string::npos) << what;
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-  }
-}
-
-const std::string kRows = "0,1,0.1\n0.005,2,0.2\n0.010,3,0.3\n";
 
 TEST(Csv, ConvertsUnitsOnceAndKeepsFurtherColumnsByName) {
   const Record record = read(
@@ -105,135 +91,6 @@ TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,inf,1\n", ":3", "u_V is 'inf'");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1e999,1\n", ":3", "u_V is '1e999'");
   expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is 'inf'");
-}
-
-TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
-  const std::string names = "Time [s],Command [V],Position [mm]\n";
-  expect_bad(names + "0,error,0.1\n0.005,2,0.2\n0.010,3,0.3\n", ":2",
-             "column Command [V]: 'error' is no number");
-  expect_bad("0,error,0.1\n0.005,2,0.2\n0.010,3,0.3\n", ":1", "column 2: 'error' is no number");
-  // a row of words, or of scales that have words before them, is none
-  EXPECT_EQ(read(names + "measured,commanded,measured\n" + kRows).t_s.size(), 3U);
-  EXPECT_EQ(read(names + "Scale,0.001,1\n" + kRows).t_s.size(), 3U);
-  // nor is a row that was commented out
-  EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
-}
-
-TEST(Csv, RefusesWordsInPlaceOfTimeCommandOrPosition) {
-  expect_bad("t_s;u_V;y_m\n0;on;2\n1;off;2\n2;on;2\n", ":1", "column u_V holds text, not numbers");
-  expect_bad("t_s;u_V;y_m\n0;1;x\n1;1;x\n2;1;x\n", ":1", "column y_m holds text, not numbers");
-}
-
-TEST(Csv, RefusesADamagedFirstRowOfTwoColumns) {
-  const auto read_command = [](const std::string& content, const char* map = "") {
-    ReadOptions options;
-    options.position_optional = true;
-    options.map = map;
-    return read_record(TemporaryFile(content).path(), options);
-  };
-  const auto refused = [&](const std::string& content, const std::string& what,
-                           const char* map = "") {
-    try {
-      (void)read_command(content, map);
-      ADD_FAILURE() << "accepted: " << content;
-    } catch (const schema::DataError& error) {
-      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
-    }
-  };
-  const std::string names = "Time [s],Command [V]\n";
-  const std::string rows = "0.005,2\n0.010,3\n0.015,3\n";
-  const char* by_number = "t=1[s],u=2[V]";
-  for (const char* field : {"error", "1.x5", "***", "word"}) {
-    const std::string what = "'" + std::string(field) + "' is no number";
-    refused(names + "0," + field + "\n" + rows, ":2: column Command [V]: " + what);
-    refused(std::string("0,") + field + "\n" + rows, ":1: column 2: " + what, by_number);
-    if (std::string(field) == "word") continue;  // begins a line of words, too
-    refused(names + field + ",2\n" + rows, ":2: column Time [s]: " + what);
-    refused(field + std::string(",2\n") + rows, ":1: column 1: " + what, by_number);
-    expect_bad("Time [s],Command [V],Position [mm]\n" + std::string(field) + ",1,2\n" + kRows, ":2",
-               "column Time [s]: " + what);
-  }
-  // command and position, without times
-  const std::string pairs = "Command [V],Position [mm]\n";
-  const std::string values = "1.6,2\n1.5,3\n1.7,3\n";
-  refused(pairs + "1.5,error\n" + values, ":2: column Position [mm]: 'error' is no number",
-          "t=200Hz");
-  refused(pairs + "1.5.5,2\n" + values, ":2: column Command [V]: '1.5.5' is no number", "t=200Hz");
-  // lines of names, units, scales, counts and dates are none
-  for (const char* header :
-       {"x-axis,A\nsecond,Volt\n", "Time [s],Command [V]\nScale,0.001\n", "Samples,500\n",
-        "Sample Interval,0.005\nTIME,CH1\n", "01.05.2024,12\n", "2024-05-01,12\n", "X,CH1\n1st,2\n",
-        "Model,MDO3024\nVertical Units,V\nTIME,2B\n", "time,A\n", "5V,12V\n", "10:11:12,5\n"}) {
-    EXPECT_EQ(read_command(header + rows, by_number).size(), 3U) << header;
-  }
-}
-
-TEST(Csv, ReadsUnitsThatStandInTheCells) {
-  const Record glued = read(
-      "Time,Valve,Position,Phase\n0.0s,12.5%,3.2mm,1A\n0.1s,-12.5%,3.3mm,1B\n0.2s,0%,3.4mm,1C\n");
-  EXPECT_THAT(glued.t_s, ElementsAre(0.0, 0.1, 0.2));
-  EXPECT_THAT(glued.u_V, ElementsAre(12.5, -12.5, 0.0));
-  EXPECT_EQ(glued.command_unit, "pct");
-  EXPECT_DOUBLE_EQ(glued.y_m[2], 3.4e-3);
-  EXPECT_TRUE(glued.further.empty()) << "names such as 1A, 1B are no amperes";
-  // decimal commas; no-break spaces before the unit
-  const Record german = read(
-      "Zeit;Ventil;Weg\n0,0\xC2\xA0s;4,5\xC2\xA0V;1.234,5 mm\n0,1\xC2\xA0s;4,5\xC2\xA0V;3,2 mm\n"
-      "0,2\xC2\xA0s;-4,5\xC2\xA0V;3,2 mm\n");
-  EXPECT_THAT(german.u_V, ElementsAre(4.5, 4.5, -4.5));
-  EXPECT_DOUBLE_EQ(german.y_m[0], 1.2345);
-  // in quotes between commas
-  const Record quoted = read(
-      "Time,Valve,Position\n\"0,0 s\",\"4,5 V\",\"3,25 mm\"\n\"0,1 s\",\"4,5 V\",\"3,2 mm\"\n"
-      "\"0,2 s\",\"4,5 V\",\"3,2 mm\"\n");
-  EXPECT_DOUBLE_EQ(quoted.y_m[0], 3.25e-3);
-  // one column alone, the header agrees; a missing cell
-  const Record one =
-      read("t_s,u_V,y_mm\n0,4.5 V,\n0.1,4.5 V,3.2 mm\n0.2,4 V,3.2 mm\n0.3,4 V,3 mm\n");
-  EXPECT_EQ(one.size(), 3U);
-  EXPECT_EQ(one.u_V.back(), 4.0);
-  // blanks around separators are no columns
-  EXPECT_EQ(read("t_s ; u_V ; y_m\n0 ; 1 ; 2\n1 ; 1 ; 2\n2 ; 1 ; 2\n").size(), 3U);
-}
-
-// Settings and names: hardly two values, and never zero.
-TEST(Csv, LeavesLabelsThatLookLikeUnitsOut) {
-  std::string text = "t_s,u_V,y_mm,Phase,Supply\n";
-  for (int k = 0; k < 40; ++k) {
-    text += std::to_string(k) + ",1.5,3.2," + (k % 2 == 0 ? "1A," : "2A,") +
-            (k < 30 ? "24V\n" : "off\n");
-  }
-  const Record labelled = read(text);
-  EXPECT_EQ(labelled.size(), 40U);
-  EXPECT_TRUE(labelled.further.empty());
-  // a measurement comes through zero, or has many values
-  std::string measured = "t_s,u_V,y_mm,Load\n";
-  for (int k = 0; k < 40; ++k)
-    measured += std::to_string(k) + ",1.5,3.2," + (k < 30 ? "0N\n" : "5N\n");
-  EXPECT_EQ(read(measured).further.size(), 1U);
-}
-
-TEST(Csv, RefusesUnitsInCellsThatContradictOneAnotherOrTheHeader) {
-  const std::string rows = "0;4.5 V;3.2 mm\n0.1;4.5 V;3.2 mm\n";
-  expect_bad(
-      "Time [s];Valve;Position\n" + rows + "0.2;4.5 V;3 cm\n", ":4",
-      "column Position: '3 cm' is in cm, the cells before are in mm; allowed: the same unit");
-  expect_bad("Time [s];Valve;Position\n" + rows + "0.2;4.5;3 mm\n", ":4",
-             "column Valve: '4.5' has no unit, the cells before are in V");
-  expect_bad("Time [s];Valve [V];Position [mm]\n0;0;3\n0.1;4.5 V;3\n0.2;4.5 V;3\n", ":3",
-             "column Valve [V]: '4.5 V' is in V, the cells before have no unit");
-  expect_bad("Time [s];Valve [V];Position [cm]\n" + rows + "0.2;4.5 V;3 mm\n", ":2",
-             "column Position [cm]: '3.2 mm' is in mm, the column's name says cm");
-  expect_bad("t_s,u_V,y_m\n0,1 V,2 m\n1,1 V,2 m\n2,1 V,2 mm\n", ":4", "'2 mm' is in mm");
-  expect_bad("t_s,u_V,y_mm\n0,1 V,2 m\n1,1 V,2 m\n2,1 V,2 m\n", ":2", "column's name says mm");
-  expect_bad("Time;Valve;Position\n0 s;error;3 mm\n1 s;4 V;3 mm\n2 s;4 V;3 mm\n", ":2",
-             "column Valve: 'error' is no number");
-  // beyond the lines that tell the form
-  std::string late = "Time [s];Valve;Position [mm]\n";
-  for (int k = 0; k < 1200; ++k) {
-    late += std::to_string(k) + ';' + std::to_string(k % 5) + (k < 1150 ? " %;3\n" : " mV;3\n");
-  }
-  expect_bad(late, ":1152", "column Valve: '0 mV' is in mV, the cells before are in %");
 }
 
 TEST(Csv, RefusesMagnitudesThatNoMachineHas) {

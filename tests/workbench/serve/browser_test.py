@@ -37,3 +37,14 @@ def run(test):
         print(missing)
         return SKIPPED
     return 0
+
+
+def open_live(browser, url):
+    """The live page with the thesis's calibrated model beside the stand, once it draws samples."""
+    page = browser.page(url)
+    page.wait("document.body.dataset.ready === 'yes'")
+    page.choose("#model", "shipped:thesis_calibrated.toml")
+    page.wait("document.querySelector('#model').value === 'thesis_calibrated.toml'")
+    page.run("document.querySelector('a[href=\"#live\"]').click()")
+    page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 400")
+    return page

@@ -29,12 +29,7 @@ def watch(args, folder):
     try:
         with Server(str(args.bin / "spoolwatch"), folder / "session", "--lcm-url", url, "--control",
                     f"{folder}/control.sock") as server, Browser() as browser:
-            page = browser.page(server.url)
-            page.wait("document.body.dataset.ready === 'yes'")
-            page.choose("#model", "shipped:thesis_calibrated.toml")
-            page.wait("document.querySelector('#model').value === 'thesis_calibrated.toml'")
-            page.run("document.querySelector('a[href=\"#live\"]').click()")
-            page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 400")
+            page = browser_test.open_live(browser, server.url)
             page.wait("document.querySelector('#channel-supply')")
             there = page.run("[...document.querySelectorAll('.channels input')].map((one) => one.id.slice(8))")
             expect(f"what this stand has: {there}", set(there) == ALL)

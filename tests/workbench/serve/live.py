@@ -40,12 +40,7 @@ def watch(args, folder):
     try:
         with Server(str(args.bin / "spoolwatch"), folder / "session", "--lcm-url", url, "--control", str(control),
                     "--allow-orders") as server, Browser() as browser:
-            page = browser.page(server.url)
-            page.wait("document.body.dataset.ready === 'yes'")
-            page.choose("#model", "shipped:thesis_calibrated.toml")
-            page.wait("document.querySelector('#model').value === 'thesis_calibrated.toml'")
-            page.run("document.querySelector('a[href=\"#live\"]').click()")
-            page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 400")
+            page = browser_test.open_live(browser, server.url)
             page.wait(f"{STATE} === 'RUN'")
             page.wait(f"{AGE}.startsWith('newest sample')")
             page.wait("document.querySelector('.estimates')")
