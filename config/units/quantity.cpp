@@ -263,6 +263,7 @@ std::string chance_words(double p) {
 
 std::string times_words(double ratio) {
   if (!std::isfinite(ratio)) return "-";
+  if (ratio > 0.0 && ratio < 0.01) return fmt::format("{:.1g}", ratio);
   return fmt::format("{:.{}f}", ratio, ratio < 10.0 ? 2 : ratio < 100.0 ? 1 : 0);
 }
 

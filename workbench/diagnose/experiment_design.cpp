@@ -105,12 +105,12 @@ std::string advice_for_unexplained(const std::vector<selection::Localisation>& w
 
 AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
                           selection::DiagnosisOptions options) {
-  std::string for_rivals;
+  std::vector<std::pair<std::vector<std::string>, std::string>> for_rivals;
   options.separable = [&](const selection::SearchContext& context,
                           const std::vector<greybox::FitSummary>& explanations,
                           const std::vector<std::string>& names) {
     const Advice advice = advise(context, explanations, names);
-    for_rivals += (for_rivals.empty() ? "" : " ") + advice.words;
+    for_rivals.emplace_back(names, advice.words);
     return advice.separates;
   };
   AdvisedDiagnosis result{selection::diagnose(problem, options), ""};
@@ -124,8 +124,10 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
   } else if (found.verdict == selection::Verdict::undetermined && found.ambiguous.empty()) {
     result.advice = words_for_doubt();
   }
-  if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
-  result.advice += for_rivals;
+  for (const auto& [names, words] : for_rivals) {
+    if (!found.rests_on_one_of(names)) continue;
+    result.advice += (result.advice.empty() ? "" : " ") + words;
+  }
   return result;
 }
 

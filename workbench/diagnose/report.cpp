@@ -50,8 +50,8 @@ LengthScale scale_of(const selection::Diagnosis& d) {
 }
 
 std::vector<present::ReferenceLine> floor_line(const selection::Diagnosis& d) {
-  if (!std::isfinite(d.noise_floor_m)) return {};
-  return {{scale_of(d).per_m * d.noise_floor_m, "noise floor"}};
+  if (!std::isfinite(d.floor_m())) return {};
+  return {{scale_of(d).per_m * d.floor_m(), "floor"}};
 }
 
 bool was_taken(const selection::Candidate& candidate, std::vector<std::string> taken) {
@@ -116,13 +116,13 @@ Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
   Table table{
       .caption = "Round " + std::to_string(index + 1) + ", " + with,
       .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
-                  Column{"× noise floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
+                  Column{"× floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
   for (const selection::Candidate& candidate : round.candidates) {
     std::vector<std::string> row{config::schema::joined(candidate.effects, " + ")};
     if (!candidate.fitted_at_all) continue;
     const bool took = was_taken(candidate, taken);
     row.push_back(scale.words(candidate.validation_rms_m));
-    row.push_back(config::units::times_words(candidate.validation_rms_m / d.noise_floor_m));
+    row.push_back(config::units::times_words(candidate.validation_rms_m / d.floor_m()));
     row.push_back(config::units::chance_words(candidate.p_value));
     row.emplace_back(!took ? "" : stayed(d.search, taken) ? "taken" : "taken, dropped later");
     if (took) table.marked_rows.push_back(table.rows.size());
@@ -164,14 +164,17 @@ Section falling_error_section(const DiagnosisReport& outcome) {
             .lines = floor_line(d)};
   plot.series.push_back({.name = "held-out error", .tone = Tone::model});
   Table table{.columns = {Column{"step", "", false}, Column{"held-out error", scale.unit},
-                          Column{"× noise floor", ""}}};
+                          Column{"× floor", ""}}};
   for (const StepWords& step : steps) {
     plot.categories.push_back(step.what);
     plot.series[0].y.push_back(scale.per_m * step.rms_m);
     table.rows.push_back({step.what, scale.words(step.rms_m),
-                          config::units::times_words(step.rms_m / d.noise_floor_m)});
+                          config::units::times_words(step.rms_m / d.floor_m())});
   }
-  table.rows.push_back({"noise floor", scale.words(d.noise_floor_m), "1"});
+  for (const StepWords& floor : floor_steps(d)) {
+    table.rows.push_back({floor.what, scale.words(floor.rms_m),
+                          config::units::times_words(floor.rms_m / d.floor_m())});
+  }
   section.plots.push_back(std::move(plot));
   section.tables.push_back(std::move(table));
   return section;
@@ -192,7 +195,7 @@ Section candidates_section(const DiagnosisReport& outcome) {
                 fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
                 " % or more and the gain is more than chance: p is the probability of such a gain "
                 "by chance "
-                "alone. The bars end at the held-out error, the dashed line is the noise floor."};
+                "alone. The bars end at the held-out error, the dashed line is the floor."};
   for (std::size_t i = 0; i < d.search.rounds.size(); ++i) {
     const std::string not_fitted = not_fitted_words(d.search.rounds[i]);
     Plot plot = candidates_plot(d, i);
@@ -298,6 +301,7 @@ std::vector<present::Fact> facts_of(const DiagnosisReport& outcome) {
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
     if (!d.missing.empty()) facts.push_back(length_fact("Effects added", d.rms_after_m));
   }
+  if (d.repetitions_set_floor()) facts.push_back(length_fact("Between repetitions", d.floor_m()));
   if (std::isfinite(d.noise_floor_m)) facts.push_back(length_fact("Noise floor", d.noise_floor_m));
   if (outcome.fitted()) {
     facts.push_back(length_fact("Free run, model file", outcome.free_run_before_m));

@@ -61,7 +61,7 @@ std::string padded(std::string text, std::size_t width, bool right = false) {
                : text + std::string(width - text.size(), ' ');
 }
 
-/// The logarithm of the error over the noise floor; one mark at the floor.
+/// The logarithm of the error over the floor; one mark there.
 std::string bar(double rms_m, double floor_m, double most_m) {
   const double most = std::log(most_m / floor_m);
   const double share = most > 0.0 ? std::log(rms_m / floor_m) / most : 0.0;
@@ -72,7 +72,8 @@ std::string bar(double rms_m, double floor_m, double most_m) {
 void print_steps(const selection::Diagnosis& d, std::ostream& out) {
   const std::vector<StepWords> steps = step_words(d);
   std::size_t width = 22;
-  double most_m = kLeastBarRatio * d.noise_floor_m;
+  const double floor_m = d.floor_m();
+  double most_m = kLeastBarRatio * floor_m;
   for (const StepWords& step : steps) {
     width = std::max(width, step.what.size());
     if (std::isfinite(step.rms_m)) most_m = std::max(most_m, step.rms_m);
@@ -80,12 +81,11 @@ void print_steps(const selection::Diagnosis& d, std::ostream& out) {
   out << '\n' << padded("step", width) << "  held-out error  x floor  (bars: logarithmic)\n";
   const auto row = [&](const std::string& what, double rms_m) {
     out << padded(what, width) << "  " << padded(config::units::length_words(rms_m), 14, true)
-        << "  " << padded(config::units::times_words(rms_m / d.noise_floor_m), 7, true) << "  "
-        << bar(rms_m, d.noise_floor_m, most_m) << '\n';
+        << "  " << padded(config::units::times_words(rms_m / floor_m), 7, true) << "  "
+        << bar(rms_m, floor_m, most_m) << '\n';
   };
   for (const StepWords& step : steps) row(step.what, step.rms_m);
-  if (d.disturbance) row("sensor and disturbance", d.disturbed_floor_m());
-  row("noise floor", d.noise_floor_m);
+  for (const StepWords& floor : floor_steps(d)) row(floor.what, floor.rms_m);
 }
 
 void print_candidates(const selection::Diagnosis& d, std::ostream& out) {

@@ -21,12 +21,18 @@ namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
 
+/// Name of the error that no model of the command can beat.
+std::string floor_name(const selection::Diagnosis& d) {
+  if (d.repetitions_set_floor()) return "the scatter between repetitions of the motion";
+  return d.disturbance ? "the floor that sensor and disturbance set" : "the noise floor";
+}
+
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
 std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
+  const bool noise = !d.repetitions_set_floor() && !d.disturbance;
   return config::units::length_words(rms_m) + " on held-out data, " +
-         config::units::times_words(rms_m / d.disturbed_floor_m()) + " times the " +
-         (d.disturbance ? "floor that sensor and disturbance set, " : "noise floor of ") +
-         config::units::length_words(d.disturbed_floor_m());
+         config::units::times_words(rms_m / d.floor_m()) + " times " + floor_name(d) +
+         (noise ? " of " : ", ") + config::units::length_words(d.floor_m());
 }
 
 std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
@@ -96,24 +102,43 @@ std::string learned_words(const selection::Diagnosis& d) {
          config::schema::joined(laws, "; and ") + ".";
 }
 
-/// "backlash (its size is within its error)".
-std::string possible_words(const selection::PossibleEffect& possible) {
-  switch (possible.why) {
+std::string doubt_words(selection::Doubt doubt, bool several) {
+  switch (doubt) {
     case selection::Doubt::at_bound:
-      return possible.effect + " (its size is at the bound of what it can be)";
+      return several ? "the size of each is at the bound of what it can be"
+                     : "its size is at the bound of what it can be";
     case selection::Doubt::within_error:
-      return possible.effect + " (its size is within its error)";
+      return several ? "the size of each is within its error" : "its size is within its error";
     case selection::Doubt::rivals:
-      return possible.effect + " (others do as well)";
+      return "others do as well";
     case selection::Doubt::remainder:
-      return possible.effect + " (what remains unexplained is no smaller than what it explains)";
+      return std::string("what remains unexplained is no smaller than what ") +
+             (several ? "each" : "it") + " explains";
     case selection::Doubt::interrupted:
-      return possible.effect + " (not everything was tried)";
+      return "not everything was tried";
     case selection::Doubt::stand_in:
       break;
   }
-  return possible.effect +
-         " (may stand in for another law: what remains enters as it does, or several share it)";
+  return several ? "they may stand in for another law: what remains enters as they do, or several "
+                   "share it"
+                 : "may stand in for another law: what remains enters as it does, or several share "
+                   "it";
+}
+
+/// "backlash (its size is within its error); null_bias and friction (others do as well)".
+std::string possible_words(const selection::Diagnosis& d) {
+  std::vector<std::pair<selection::Doubt, std::vector<std::string>>> doubts;
+  for (const selection::PossibleEffect& one : d.possible) {
+    auto same = std::find_if(doubts.begin(), doubts.end(),
+                             [&](const auto& doubt) { return doubt.first == one.why; });
+    if (same == doubts.end()) same = doubts.insert(doubts.end(), {one.why, {}});
+    same->second.push_back(one.effect);
+  }
+  const auto text = [](const auto& doubt) {
+    return config::schema::listed(doubt.second) + " (" +
+           doubt_words(doubt.first, doubt.second.size() > 1) + ")";
+  };
+  return config::schema::joined_by(doubts, text, "; ");
 }
 
 /// `taken`: the effects of the better model.
@@ -148,9 +173,8 @@ std::string fall_words(const selection::Diagnosis& d) {
                                : "The";
   return with + " held-out error " + (d.rms_after_m < d.rms_before_m ? "falls" : "goes") +
          " from " + config::units::length_words(d.rms_before_m) + " to " +
-         config::units::length_words(d.rms_after_m) + "; the " +
-         (d.disturbance ? "floor that sensor and disturbance set is " : "noise floor is ") +
-         config::units::length_words(d.disturbed_floor_m()) + ".";
+         config::units::length_words(d.rms_after_m) + "; " + floor_name(d) + " is " +
+         config::units::length_words(d.floor_m()) + ".";
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
@@ -158,6 +182,7 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
     out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
   }
   for (const auto& group : d.same_here) {
+    if (!d.rests_on_one_of(group)) continue;
     out.push_back("On this plant no motion that was tried tells " + config::schema::listed(group) +
                   " apart: the name is a choice.");
   }
@@ -262,8 +287,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));
   if (!d.possible.empty()) {
-    out.push_back(
-        "Not established: " + config::schema::joined_by(d.possible, possible_words, ", ") + ".");
+    out.push_back("Not established: " + possible_words(d) + ".");
   }
   for (const selection::RefusedModel& model : d.search.refused) {
     out.push_back(refused_words(model, d.missing));
@@ -352,6 +376,14 @@ std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
     steps.push_back({"refined", diagnosis.rms_after_m});
   }
   return steps;
+}
+
+std::vector<StepWords> floor_steps(const selection::Diagnosis& d) {
+  std::vector<StepWords> floors;
+  if (d.repetitions_set_floor()) floors.push_back({"between repetitions", d.floor_m()});
+  if (d.disturbance) floors.push_back({"sensor and disturbance", d.disturbed_floor_m()});
+  floors.push_back({"noise floor", d.noise_floor_m});
+  return floors;
 }
 
 }  // namespace workbench::diagnose

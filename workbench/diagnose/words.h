@@ -26,6 +26,8 @@ struct StepWords {
   double rms_m = 0.0;
 };
 [[nodiscard]] std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis);
+/// The errors below which a model of the command cannot come, the largest first.
+[[nodiscard]] std::vector<StepWords> floor_steps(const selection::Diagnosis& d);
 
 /// Without its folder.
 [[nodiscard]] std::string file_name(const std::string& file);

@@ -98,7 +98,10 @@ ordered_json summary_of(const diagnose::DiagnosisReport& report) {
     }
   }
   out["noise_floor_m"] = number_or_null(d.noise_floor_m);
-  out["noise_floor"] = length(d.noise_floor_m);
+  out["floors"] = ordered_json::array();
+  for (const diagnose::StepWords& floor : diagnose::floor_steps(d)) {
+    out["floors"].push_back({{"what", floor.what}, {"size", length(floor.rms_m)}});
+  }
   out["candidates"] = candidates_of(d);
   out["laws"] = laws_of(report);
   out["interrupted"] = report.interrupted;

@@ -15,6 +15,7 @@
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/record_differences.h"
+#include "estimator/greybox/selection/spectral_line_candidates.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -143,8 +144,14 @@ bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   return !search.physics_missing();
 }
 
+/// True where a spectral line explains more of what a search leaves than any curve does.
+bool leaves_a_line(const SearchContext& context, const InnovationSearch& search) {
+  const std::vector<ScoredLine> lines = line_candidates(context, search.final);
+  return !lines.empty() && lines.front().gain_nats > search.curve_nats;
+}
+
 /// The beginning of a search by simulations: with a second effect too where the first leaves more
-/// than a disturbance, of which simulations know nothing.
+/// than a disturbance or a line, of which simulations know nothing.
 SearchStart begin_search(const SearchContext& context) {
   SearchStart start = start_search(context);
   const ModelStage& stage = start.branch.stage;
@@ -157,7 +164,9 @@ SearchStart begin_search(const SearchContext& context) {
   left.final = settled(fitted, stage, {}, 1, wide(context.options.threads));
   const bool known = std::isfinite(left.final.minus_two_log);
   if (known) weigh_remainder(fitted, left);
-  if (!known || left.physics_missing()) add_second_effect(context, start);
+  if (!known || (left.physics_missing() && !leaves_a_line(fitted, left))) {
+    add_second_effect(context, start);
+  }
   return start;
 }
 
@@ -200,8 +209,24 @@ std::vector<std::string> Diagnosis::established() const {
   return names;
 }
 
+bool Diagnosis::rests_on_one_of(const std::vector<std::string>& names) const {
+  if (verdict != Verdict::unexplained) return true;
+  const std::vector<std::string> sure = established();
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return std::find(sure.begin(), sure.end(), name) != sure.end();
+  });
+}
+
 double Diagnosis::disturbed_floor_m() const {
   return disturbance ? std::hypot(noise_floor_m, disturbance->rms_m) : noise_floor_m;
+}
+
+bool Diagnosis::repetitions_set_floor() const {
+  return repetition && repetition->scatter_m > disturbed_floor_m();
+}
+
+double Diagnosis::floor_m() const {
+  return repetitions_set_floor() ? repetition->scatter_m : disturbed_floor_m();
 }
 
 Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {

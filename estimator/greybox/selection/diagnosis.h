@@ -102,12 +102,20 @@ struct Diagnosis {
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
+  /// True where the answer rests on one of the names: an unexplained record rests on what is
+  /// established alone.
+  [[nodiscard]] bool rests_on_one_of(const std::vector<std::string>& names) const;
   /// True where another plant without effects leaves clearly less than the better model.
   [[nodiscard]] bool fits_another_plant() const {
     return !plants.empty() && plants.front().validation_rms_m < kBetterPlant * rms_after_m;
   }
   /// The error of a simulation that sensor and disturbance cause.
   [[nodiscard]] double disturbed_floor_m() const;
+  /// True where repetitions of the motion differ by more than `disturbed_floor_m()`.
+  [[nodiscard]] bool repetitions_set_floor() const;
+  /// The error that no model driven by the command alone can beat: that of sensor and disturbance,
+  /// or the scatter between repetitions.
+  [[nodiscard]] double floor_m() const;
 };
 
 /// Runs the whole diagnosis. Ends early with the best result so far once `options.cancel` returns

@@ -97,6 +97,45 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   EXPECT_THAT(verdict_words(d), HasSubstr("Unexplained: an error of 12 um"));
 }
 
+TEST(Words, ScatterBetweenRepetitionsIsTheFloorWhereItIsLarger) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::unexplained;
+  d.missing.clear();
+  d.rms_after_m = 12e-6;
+  d.repetition = {5.0, 6e-6, 10.4e-6};
+  EXPECT_THAT(verdict_words(d), HasSubstr("2.00 times the scatter between repetitions of the "
+                                          "motion, 6 um, remains"));
+  std::vector<StepWords> floors = floor_steps(d);
+  ASSERT_EQ(floors.size(), 2U);
+  EXPECT_EQ(floors[0].what, "between repetitions");
+  EXPECT_EQ(floors[0].rms_m, 6e-6);
+  EXPECT_EQ(floors[1].what, "noise floor");
+  d.repetition->scatter_m = 2e-6;  // sensor noise alone is larger
+  EXPECT_THAT(verdict_words(d), HasSubstr("5.00 times the noise floor of 2.4 um"));
+  EXPECT_EQ(floor_steps(d).size(), 1U);
+}
+
+TEST(Words, EffectsUnderOneDoubtShareASentence) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.possible = {{"friction", selection::Doubt::within_error},
+                {"backlash", selection::Doubt::rivals},
+                {"deadband", selection::Doubt::within_error}};
+  EXPECT_THAT(remarks(outcome), Contains("Not established: friction and deadband (the size "
+                                         "of each is within its error); backlash (others do as well)."));
+}
+
+TEST(Words, AliasesOfWhatIsNotEstablishedAreLeftOut) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::unexplained;
+  d.same_here = {{"friction", "backlash"}};
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("the name is a choice")));
+  d.possible = {{"friction", selection::Doubt::stand_in}};
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("the name is a choice"))));
+}
+
 TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;

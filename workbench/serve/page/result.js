@@ -32,7 +32,8 @@ function Steps({result}) {
     <h3>How the error falls</h3>
     <ol class="steps">${result.steps.map((step) => html`
       <li><span>${step.what}</span><b>${step.heldout}</b></li>`)}
-      <li class="floor"><span>noise floor</span><b>${result.noise_floor}</b></li></ol>`;
+      ${result.floors.map((floor) => html`
+        <li class="floor"><span>${floor.what}</span><b>${floor.size}</b></li>`)}</ol>`;
 }
 
 export function Result({result, run, running}) {
