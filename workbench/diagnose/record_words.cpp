@@ -108,12 +108,7 @@ std::string excitation_words(const selection::Excitation& excitation) {
 std::vector<std::string> notes(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const greybox::FitDataset& data = outcome.prepared->problem.data;
-  std::vector<std::string> out;
-  for (const greybox::Dataset& record : data.records) {
-    for (const std::string& note : present::notes_of(record)) {
-      out.push_back(record.name + ": " + note);
-    }
-  }
+  std::vector<std::string> out = present::notes_of(data.records);
   if (!d.excitation.sufficient()) out.push_back(excitation_words(d.excitation));
   if (d.searched_s) {
     out.push_back("effects were searched for in " + std::to_string(std::lround(*d.searched_s)) +

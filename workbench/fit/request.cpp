@@ -159,10 +159,9 @@ PreparedFit prepare(const FitRequest& request) {
   require_motion(problem.data);
   start_neutral_effects(problem.model, problem.data, choice);
   problem.start = choice.start;
-  for (Dataset& record : problem.data.records) {
-    present::note_changes(problem.model, record);
-    for (const std::string& note : present::notes_of(record))
-      out.notes.push_back(record.name + ": " + note);
+  for (Dataset& record : problem.data.records) present::note_changes(problem.model, record);
+  out.notes = present::notes_of(problem.data.records);
+  for (const Dataset& record : problem.data.records) {
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
       throw UsageError("--observer: is too fast for samples every " +

@@ -92,6 +92,29 @@ void note_faults(const greybox::Dataset& data, std::vector<std::string>& notes) 
   }
 }
 
+/// The end of `whole` takes another block of the same record.
+void append(greybox::Dataset& whole, const greybox::Dataset& block) {
+  const std::size_t size = whole.size();
+  const auto add = [](auto& to, const auto& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  for (const std::size_t start : block.starts) whole.starts.push_back(size + start);
+  whole.valid.resize(size, 1);
+  add(whole.t_s, block.t_s);
+  add(whole.u_V, block.u_V);
+  add(whole.y_m, block.y_m);
+  add(whole.valid, block.valid);
+  whole.valid.resize(whole.size(), 1);
+  for (const std::string& note : block.notes) {
+    if (std::find(whole.notes.begin(), whole.notes.end(), note) == whole.notes.end()) {
+      whole.notes.push_back(note);
+    }
+  }
+  whole.gaps.gaps += block.gaps.gaps;
+  whole.gaps.segments += block.gaps.segments;
+  whole.gaps.samples_left_out += block.gaps.samples_left_out;
+}
+
 }  // namespace
 
 void note_changes(const plant_sim::ModelFile& model, greybox::Dataset& record) {
@@ -121,6 +144,24 @@ std::vector<std::string> notes_of(const greybox::Dataset& data) {
                                 data.gaps.samples_left_out, greybox::kShortest_s));
   }
   note_faults(data, notes);
+  return notes;
+}
+
+std::vector<std::string> notes_of(const std::vector<greybox::Dataset>& records) {
+  std::vector<greybox::Dataset> whole;
+  for (const greybox::Dataset& record : records) {
+    const auto same = std::find_if(whole.begin(), whole.end(),
+                                   [&](const auto& one) { return one.name == record.name; });
+    if (same == whole.end()) {
+      whole.push_back(record);
+    } else {
+      append(*same, record);
+    }
+  }
+  std::vector<std::string> notes;
+  for (const greybox::Dataset& record : whole) {
+    for (const std::string& note : notes_of(record)) notes.push_back(record.name + ": " + note);
+  }
   return notes;
 }
 

@@ -11,6 +11,9 @@ namespace workbench::present {
 
 /// Notes of the record's reader, then gaps and samples left out, then faults of the reading.
 [[nodiscard]] std::vector<std::string> notes_of(const estimator::greybox::Dataset& data);
+/// The same of several, each after the record's name; the blocks of one record count as one.
+[[nodiscard]] std::vector<std::string> notes_of(
+    const std::vector<estimator::greybox::Dataset>& records);
 
 /// Adds to the record's notes that the model's changes belong to one record, and each change that
 /// this record does not have: before its begin, after its end, or of a stroke that its rod is

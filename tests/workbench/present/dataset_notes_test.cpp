@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "config/schema/document.h"
 
 namespace workbench::present {
@@ -61,6 +64,34 @@ TEST(DatasetNotes, NameAStrokeThatTheRodIsBeyond) {
                           "after it"));
   EXPECT_THAT(noted(change("stroke_m", 0.4, 105.0)), testing::SizeIs(1));
   EXPECT_THAT(noted(change("stroke_m", 0.4, 105.0)).front(), testing::HasSubstr("one record"));
+}
+
+/// A record in which the position follows the command between two values and stays at neither.
+estimator::greybox::Dataset ramps(double from_m, double to_m, double begin_s) {
+  estimator::greybox::Dataset data;
+  data.name = "bench.csv";
+  data.sample_time_s = 0.01;
+  data.starts = {0};
+  double y_m = from_m;
+  for (int k = 0; k < 1000; ++k) {
+    const double u_V = k % 200 < 100 ? 1.0 : -1.0;
+    data.t_s.push_back(begin_s + 0.01 * k);
+    data.u_V.push_back(u_V);
+    data.y_m.push_back(std::round(1e5 * y_m) / 1e5);
+    y_m = std::clamp(y_m + 0.01 * u_V * 2.0 * (to_m - from_m), from_m, to_m);
+  }
+  data.valid.assign(data.size(), 1);
+  return data;
+}
+
+TEST(DatasetNotes, TheEndOfABlockIsNoEndOfTheSensor) {
+  // each block stays at its own ends, of which two are those of the record
+  const std::vector<estimator::greybox::Dataset> blocks{ramps(0.1, 0.2, 0.0),
+                                                        ramps(0.2, 0.3, 10.0)};
+  const std::vector<std::string> notes = notes_of(blocks);
+  ASSERT_THAT(notes, testing::SizeIs(2));
+  EXPECT_THAT(notes[0], testing::HasSubstr("bench.csv: the position stays at exactly 100 mm"));
+  EXPECT_THAT(notes[1], testing::HasSubstr("stays at exactly 300 mm"));
 }
 
 }  // namespace
