@@ -30,7 +30,8 @@ bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t l
   for (std::size_t i = first; i < last; ++i) {
     const FreeParameter& p = fitted.parameters[i];
     const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
-    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
+    const bool damps = p.name.ends_with(".damping_ratio");
+    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0 && !damps;
     if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
   }
   return false;

@@ -39,7 +39,8 @@ template <class Keep>
 }
 
 /// True when an effect's size, among the parameters from `first` on, is at the bound of what it can
-/// be: it then stands for something else. Phases and sizes of 0 do not count.
+/// be: it then stands for something else. Phases and sizes of 0 do not count, a resonance
+/// without damping does: there is none.
 [[nodiscard]] bool leaves_its_range(const FitSummary& fitted, std::size_t first);
 /// The same of the parameters from `first` to before `last`.
 [[nodiscard]] bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t last);
