@@ -109,6 +109,9 @@ std::string doubt_words(selection::Doubt doubt, bool several) {
                      : "its size is at the bound of what it can be";
     case selection::Doubt::within_error:
       return several ? "the size of each is within its error" : "its size is within its error";
+    case selection::Doubt::chance:
+      return std::string("what ") + (several ? "each" : "it") +
+             " gains differs so much over the record that it may be chance";
     case selection::Doubt::rivals:
       return "others do as well";
     case selection::Doubt::remainder:

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kStandardErrors = 2.0;
 constexpr double kMostOfRemainder = 0.5;
+/// Probability of an effect's gain by chance above which it is not established.
+constexpr double kLikelyChance = 0.05;
 /// Squared error that an effect explains over that which remains, above which it is no stand-in.
 constexpr double kBeyondDoubt = 100.0;
 /// The same where what remains enters as the effect does: a square of the speed in place of the
@@ -127,8 +129,25 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;
 }
 
+/// Probability that what the effect gained, when it was taken last, is chance; NaN: not known.
+double chance_of(const StructureSearch& search, const std::string& effect) {
+  const auto has = [&](const std::vector<std::string>& effects) {
+    return std::find(effects.begin(), effects.end(), effect) != effects.end();
+  };
+  for (auto round = search.rounds.rbegin(); round != search.rounds.rend(); ++round) {
+    if (has(round->before.added)) continue;
+    const auto own =
+        std::find_if(round->candidates.begin(), round->candidates.end(), [&](const auto& one) {
+          return one.fitted_at_all && has(one.effects);
+        });
+    if (own != round->candidates.end()) return own->p_value;
+  }
+  return std::nan("");
+}
+
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
 std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
+  if (chance_of(diagnosis.search, effect) > kLikelyChance) return Doubt::chance;
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
     if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
   }
@@ -156,6 +175,8 @@ const char* to_string(Doubt doubt) {
       return "at_bound";
     case Doubt::within_error:
       return "within_error";
+    case Doubt::chance:
+      return "chance";
     case Doubt::rivals:
       return "rivals";
     case Doubt::remainder:

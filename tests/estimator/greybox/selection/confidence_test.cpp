@@ -35,6 +35,21 @@ TEST(Confidence, ASizeWithinItsErrorIsNotEstablishedWhateverItsRefinements) {
   EXPECT_THAT(named(unexplained()), ElementsAre("backlash within_error"));
 }
 
+TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
+  Diagnosis d = unexplained();
+  Candidate friction;
+  friction.effects = {"friction"};
+  friction.fitted_at_all = true;
+  friction.p_value = 0.2;
+  d.search.rounds = {Round{{}, {friction}}};
+  EXPECT_THAT(named(d), ElementsAre("friction chance", "backlash within_error"));
+  d.search.rounds[0].candidates[0].p_value = 0.02;
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.search.rounds[0].candidates[0].p_value = 0.2;
+  d.verdict = Verdict::missing;  // the error is at the floor
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+}
+
 TEST(Confidence, NothingIsMissingForSureWhereNoEffectIsEstablished) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;
