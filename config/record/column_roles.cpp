@@ -324,8 +324,12 @@ const Channel* Layout::of(Role role) const noexcept {
 Layout understand(const FileHead& head, const std::vector<MapEntry>& map, bool position_optional) {
   if (map.empty()) {
     std::vector<std::string> names;
-    for (const FileColumn& column : head.columns) names.push_back(column.header);
-    if (auto layout = plain_layout(names, head.where)) {
+    std::vector<std::string> units;
+    for (const FileColumn& column : head.columns) {
+      names.push_back(column.header);
+      units.push_back(column.unit);
+    }
+    if (auto layout = plain_layout(names, units, head.where)) {
       for (const Channel& channel : layout->channels) {
         if (channel.role == Role::further || head.columns[channel.column].numbers) continue;
         throw bad_data(head.where, "column " + names[channel.column] + " holds text, not numbers");

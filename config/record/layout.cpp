@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "config/record/column_roles.h"
+#include "config/record/unit_cells.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
@@ -78,6 +79,25 @@ void refuse_clash(const std::vector<RecordColumn>& columns, const std::vector<st
   }
 }
 
+/// The column of that name and of a unit beside the name, which a name without one takes on.
+RecordColumn column_of(const std::string& name, const std::string& unit_beside,
+                       const std::string& where) {
+  RecordColumn column = parse_column(name);
+  const UnitText unit = parse_unit(unit_beside);
+  if (!unit.known() || unit.si == "1") return column;
+  HeaderText named = parse_header(name);
+  if (!column.si_unit.empty()) {
+    named = {column.stem, {name.substr(column.stem.size() + 1), column.si_unit, column.factor}};
+  }
+  if (named.unit.known() && !same_unit(named.unit, unit)) {
+    throw bad_data(where,
+                   "column " + name + " names two units, " + named.unit.text + " and " + unit.text);
+  }
+  if (!column.si_unit.empty()) return column;
+  const std::string stem = named.unit.known() ? named.name : name;
+  return {stem, unit.si, stem + "_" + unit.si, unit.factor};
+}
+
 }  // namespace
 
 bool is_time(const RecordColumn& column) { return column.stem == "t" || column.stem == "time"; }
@@ -85,6 +105,7 @@ bool is_time(const RecordColumn& column) { return column.stem == "t" || column.s
 bool is_main(const RecordColumn& column) { return main_of(column) != nullptr; }
 
 std::optional<Layout> plain_layout(const std::vector<std::string>& names,
+                                   const std::vector<std::string>& units,
                                    const std::string& where) {
   std::vector<RecordColumn> columns;
   columns.reserve(names.size());
@@ -99,13 +120,17 @@ std::optional<Layout> plain_layout(const std::vector<std::string>& names,
   Layout layout;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (names[i].empty()) continue;
+    const bool named_unit = !columns[i].si_unit.empty();
+    columns[i] = column_of(names[i], units[i], where);
     refuse_clash(columns, names, i, where);
     const RecordColumn& column = columns[i];
     Channel channel;
     channel.column = i;
     channel.name = column.si_name;
     channel.factor = column.factor;
-    if (!column.si_unit.empty()) channel.unit_text = names[i].substr(column.stem.size() + 1);
+    if (!column.si_unit.empty()) {
+      channel.unit_text = named_unit ? names[i].substr(column.stem.size() + 1) : units[i];
+    }
     if (const MainColumn* main = main_of(column); main != nullptr) {
       if (column.si_unit != main->si_unit) {
         throw bad_data(where,

@@ -24,9 +24,12 @@ struct RecordColumn {
 [[nodiscard]] bool is_main(const RecordColumn& column);
 
 /// Columns t_s, u_V and y_m with their units, by name, and every further one; none where one of the
-/// three is missing. A column without a name is left out. Throws schema::DataError at `where` for a
-/// name or a quantity that is there twice.
+/// three is missing. A column without a name is left out. `units`: those beside the names, of a
+/// line or of the cells, one per column, empty: none; a further column without a unit in its name
+/// has this one. Throws schema::DataError at `where` for a name or a quantity that is there twice,
+/// and for a column with two units.
 [[nodiscard]] std::optional<Layout> plain_layout(const std::vector<std::string>& names,
+                                                 const std::vector<std::string>& units,
                                                  const std::string& where);
 
 /// Largest magnitude that a quantity of this SI unit has on any machine; infinite for other units.

@@ -41,6 +41,24 @@ TEST(Csv, ReadsUnitsThatStandInTheCells) {
   EXPECT_EQ(read("t_s ; u_V ; y_m\n0 ; 1 ; 2\n1 ; 1 ; 2\n2 ; 1 ; 2\n").size(), 3U);
 }
 
+TEST(Csv, CarriesTheUnitOfItsCellsIntoAFurtherColumnBesideTheOwnNames) {
+  const Record cells = read("t_s,u_V,y_m,p\n0,1,2,50 bar\n1,1,2,51 bar\n2,1,2,52 bar\n");
+  ASSERT_NE(cells.column("p_Pa"), nullptr);
+  EXPECT_THAT(*cells.column("p_Pa"), ElementsAre(50e5, 51e5, 52e5));
+  const Record line =
+      read("t_s;u_V;y_m;p;i_mA\ns;V;m;bar;mA\n0;1;2;50;4\n1;1;2;51;5\n2;1;2;52;6\n");
+  ASSERT_NE(line.column("p_Pa"), nullptr);
+  EXPECT_EQ(line.column("p_Pa")->at(2), 52e5);
+  ASSERT_NE(line.column("i_A"), nullptr);
+  EXPECT_DOUBLE_EQ(line.column("i_A")->at(2), 6e-3);
+  const std::string rows = "0;1;2;50\n1;1;2;51\n2;1;2;52\n";
+  expect_bad("t_s;u_V;y_m;p\ns;mV;m;bar\n" + rows, ":1", "column u_V names two units, V and mV");
+  expect_bad("t_s;u_V;y_m;p_kPa\ns;V;m;bar\n" + rows, ":1", "p_kPa names two units, kPa and bar");
+  expect_bad("t_s;u_V;y_m;i_mA\ns;V;m;A\n" + rows, ":1", "column i_mA names two units, mA and A");
+  expect_bad("t_s,u_V,y_m,p,p_bar\n0,1,2,50 bar,1\n1,1,2,51 bar,1\n2,1,2,52 bar,1\n", ":1",
+             "contradictory units: p and p_bar");
+}
+
 // Settings and names: hardly two values, and never zero.
 TEST(Csv, LeavesLabelsThatLookLikeUnitsOut) {
   std::string text = "t_s,u_V,y_mm,Phase,Supply\n";

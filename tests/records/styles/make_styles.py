@@ -68,6 +68,17 @@ def own_in_microseconds():
     return "t_us,u_V,y_um\n" + rows([[1e6 * t for t in T], U_V, [1e6 * y for y in Y_M]]), truth()
 
 
+@style()
+def own_with_a_line_of_units():
+    return ("t_s;u_V;y_m;p\ns;V;m;bar\n" + rows([T, U_V, Y_M, [70.0] * len(T)], ";"),
+            truth(further={"p_Pa": [70e5] * len(T)}))
+
+
+@style()
+def bad_own_with_another_unit_below():
+    return "t_s;u_V;y_m\ns;mV;m\n" + rows([T, U_V, Y_M], ";"), refused("column u_V names two units, V and mV")
+
+
 # --- spreadsheets --------------------------------------------------------------------------------
 
 @style()
@@ -469,6 +480,13 @@ def units_in_every_cell_with_decimal_commas():
 def units_in_quoted_cells():
     columns = with_units([T_COMMA, U_COMMA, grouped(Y_MM, 3, "", ",")], [" s", " V", " mm"])
     return ("Time,Command,Position\n" + between([quoted(c) for c in columns]), truth(tolerance=1e-6))
+
+
+@style()
+def units_in_the_cells_of_a_further_column():
+    p = ["%.1f bar" % (70 + k % 5) for k in range(len(T))]
+    return ("t_s,u_V,y_m,p\n" + rows([T, U_V, Y_M, p]),
+            truth(further={"p_Pa": [1e5 * (70 + k % 5) for k in range(len(T))]}))
 
 
 @style()
