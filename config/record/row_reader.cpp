@@ -258,6 +258,7 @@ inline double RowReader::number_in(std::string_view text, std::size_t column) {
   const ColumnDecimals& written = form_.decimals[column];
   const std::optional<std::string_view> number = form_.cell_units[column].number_in(text);
   if (!number || !parse_number(*number, written.decimal, value, written.lone)) {
+    if (is_missing_cell(text)) return std::numeric_limits<double>::quiet_NaN();
     const std::string word = lower(text);
     const bool infinite = word == "inf" || word == "-inf" || word == "+inf" || word == "infinity" ||
                           word == "-infinity";

@@ -320,7 +320,7 @@ FieldKind kind_of(std::string_view field, char decimal, double& value) {
   if (is_missing(field)) return FieldKind::missing;
   if (parse_number(field, decimal, value)) return FieldKind::number;
   if (parse_clock(field, value)) return FieldKind::clock;
-  return FieldKind::text;
+  return is_missing_cell(field) ? FieldKind::missing : FieldKind::text;
 }
 
 FieldKind cell_kind(std::string_view field, char decimal, double& value) {

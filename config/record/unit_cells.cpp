@@ -44,6 +44,24 @@ std::optional<UnitCell> unit_cell(std::string_view field) {
   return std::nullopt;
 }
 
+bool is_missing_cell(std::string_view field) {
+  constexpr std::size_t kLongest = 32;
+  if (field.size() > kLongest || is_digit(field.empty() ? '0' : field.front())) return false;
+  for (std::size_t end = 1; end < field.size(); ++end) {
+    const std::string_view word = trimmed(field.substr(0, end));
+    if (!is_missing(word)) continue;
+    // "NAm" is a name, "NaNmm" is none.
+    const std::string text = lower(word);
+    const bool blank = is_blank(field[end]) || static_cast<unsigned char>(field[end]) >= 0x80;
+    if (!blank && !is_blank(field[end - 1]) && !text.ends_with("nan") && !text.ends_with("--")) {
+      continue;
+    }
+    const UnitText unit = parse_unit(unit_text_of(field.substr(end)));
+    if (unit.known() && unit.si != "1") return true;
+  }
+  return false;
+}
+
 std::string_view without_unit(std::string_view field) {
   const std::optional<UnitCell> cell = unit_cell(field);
   return cell ? cell->number : field;

@@ -24,6 +24,9 @@ struct UnitCell {
 /// None where `field` does not begin as a number or does not end in a known unit.
 [[nodiscard]] std::optional<UnitCell> unit_cell(std::string_view field);
 
+/// "NaN mm", "-- mm": a gap in a column whose cells carry their unit.
+[[nodiscard]] bool is_missing_cell(std::string_view field);
+
 /// "3.2" of "3.2 mm", all of any other text.
 [[nodiscard]] std::string_view without_unit(std::string_view field);
 

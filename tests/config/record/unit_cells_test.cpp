@@ -59,6 +59,19 @@ TEST(Csv, CarriesTheUnitOfItsCellsIntoAFurtherColumnBesideTheOwnNames) {
              "contradictory units: p and p_bar");
 }
 
+TEST(Csv, TakesCellsWithAUnitButNoNumberForGaps) {
+  for (const std::string gap : {"NaN mm", "nanmm", "-- mm", "--mm", "- mm", "n/a\xC2\xA0mm"}) {
+    SCOPED_TRACE(gap);
+    const std::string begin = "Time;Valve;Position\n0 s;1 V;3 mm\n1 s;1 V;4 mm\n2 s;1 V;";
+    const Record record = read(begin + gap + "\n3 s;1 V;5 mm\n4 s;1 V;6 mm\n");
+    EXPECT_THAT(record.y_m, ElementsAre(3e-3, 4e-3, 5e-3, 6e-3));
+    EXPECT_EQ(record.gaps.size(), 1U);
+    // the first cell, and a column of numbers without units
+    EXPECT_EQ(read("t_s,u_V,y_mm\n0,1," + gap + "\n1,1,2\n2,1,2\n3,1,2\n").size(), 3U);
+  }
+  expect_bad("t_s,u_V,y_mm\n0,1,2\n1,1,NAm\n2,1,2\n", ":3", "'NAm' is no number");
+}
+
 // Settings and names: hardly two values, and never zero.
 TEST(Csv, LeavesLabelsThatLookLikeUnitsOut) {
   std::string text = "t_s,u_V,y_mm,Phase,Supply\n";

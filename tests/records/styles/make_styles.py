@@ -490,6 +490,14 @@ def units_in_the_cells_of_a_further_column():
 
 
 @style()
+def units_in_every_cell_and_gaps():
+    y = ["NaN mm" if k == 50 else "-- mm" if k == 300 else "%.4f mm" % v for k, v in enumerate(Y_MM)]
+    kept = [k for k in range(len(T)) if k not in (50, 300)]
+    return ("Time;Valve command;Position\n" + between(with_units([T_POINT, U_POINT, y], [" s", " V", ""]), ";"),
+            truth([T[k] for k in kept], [U_V[k] for k in kept], [Y_M[k] for k in kept]))
+
+
+@style()
 def bad_units_of_an_autoranging_meter():
     y = ["%.3f mm" % v if v > 280 else "%.4f cm" % (0.1 * v) for v in Y_MM]
     return ("Time [s],Command [V],Position\n" + rows([T, U_V, y]),
