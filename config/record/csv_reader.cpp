@@ -63,6 +63,13 @@ std::string words_of(const TextForm& form) {
   return words + ", numbers from line " + std::to_string(form.data_line);
 }
 
+/// "line 3 'min;-10;-100', line 4 'max;10;100'"
+std::string lines_in(const std::vector<PassedLine>& passed) {
+  return schema::joined_by(passed, [](const PassedLine& line) {
+    return "line " + std::to_string(line.line) + " " + record::quoted(line.text);
+  });
+}
+
 std::string column_words(const TextForm& form, std::size_t column) {
   return form.names.empty() || form.names[column].empty() ? std::to_string(column + 1)
                                                           : form.names[column];
@@ -144,6 +151,7 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
   for (std::size_t* line : {&form.data_line, &form.header_line, &form.unit_line}) {
     if (passed > 0 && *line > 0) ++*line;
   }
+  for (PassedLine& line : form.passed) line.line += passed > 0 ? 1 : 0;
   const FileHead head = columns_of(form, name);
   Layout layout = understand(head, map, options.position_optional);
   const std::string left_out = leave_out_ambiguous(form, name, layout);
@@ -171,6 +179,9 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
     words += (words.empty() ? "" : ", ") + rows.column_name(i);
   }
   if (!words.empty()) record.notes.push_back("left out, no numbers: " + words);
+  if (!form.passed.empty()) {
+    record.notes.push_back("left out, neither names nor a row: " + lines_in(form.passed));
+  }
   if (!left_out.empty()) {
     record.notes.push_back("left out, '1,234' there has two readings: " + left_out);
   }

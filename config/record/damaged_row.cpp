@@ -10,11 +10,13 @@
 namespace config::record {
 namespace {
 
-/// No name of a column and no word of a preamble: "0.3x5", "***", "overflow".
-bool is_damaged(std::string_view field, char decimal) {
-  constexpr std::array<std::string_view, 14> kWords{
-      "error",     "err",  "#ref!", "#name?", "#num!",   "inf",      "-inf",
-      "overrange", "over", "ovf",   "fault",  "invalid", "overflow", "overload"};
+/// No name of a column and no word of a preamble: "0.3x5", "***", "overflow"; in a column of dates,
+/// "2024-13-01".
+bool is_damaged(std::string_view field, char decimal, bool clock) {
+  constexpr std::array<std::string_view, 22> kWords{
+      "error", "err", "#ref!", "#name?",     "#num!",     "inf",         "-inf", "overrange",
+      "over",  "ovf", "fault", "invalid",    "overflow",  "overload",    "ol",   "-ol",
+      "+ol",   "o.l", "o.l.",  "underrange", "underflow", "out of range"};
   const std::string word = lower(field);
   if (std::find(kWords.begin(), kWords.end(), word) != kWords.end()) return true;
   const auto count = [&word](auto is) { return std::count_if(word.begin(), word.end(), is); };
@@ -23,6 +25,7 @@ bool is_damaged(std::string_view field, char decimal) {
     return static_cast<unsigned char>(c) >= 0x80 || (c >= 'a' && c <= 'z') || c == '%';
   });
   const auto decimals = count([decimal](char c) { return c == decimal; });
+  if (clock && digits >= 2) return letters < digits;
   if (digits == 0) return letters == 0 && word.find_first_of("[]()") == std::string::npos;
   const std::size_t begin = word.find_first_not_of("+-");
   const bool date = letters == 0 && decimals == 2 && word.size() >= 8;
@@ -50,6 +53,7 @@ std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
   std::vector<std::size_t> others;
   bool begins = false;
   bool leads = false;
+  bool before = false;
   for (std::size_t c = 0; c < fields.size(); ++c) {
     if (rows.kinds[c] != FieldKind::number && rows.kinds[c] != FieldKind::clock) continue;
     double value = 0.0;
@@ -62,15 +66,32 @@ std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
     ++numbers;
     begins = begins || others.empty();
     leads = leads || (c == 0 && leads_to(value, rows.head[c]));
+    before = before || (c == 0 && !rows.head[c].empty() && value < rows.head[c].front());
   }
   if (others.empty() || numbers == 0) return std::nullopt;
-  const bool row =
-      begins && (2 * numbers > fields.size() || (others.size() == 1 && (rows.named || leads)));
+  const bool named = rows.named && (before || others.size() == 1);
+  const bool row = begins && (2 * numbers > fields.size() || named || leads);
   const bool damaged = std::all_of(others.begin(), others.end(), [&](std::size_t c) {
-    return is_damaged(fields[c], rows.decimal);
+    return is_damaged(fields[c], rows.decimal, rows.kinds[c] == FieldKind::clock);
   });
   if (!row && !damaged) return std::nullopt;
   return others.front();
+}
+
+bool are_rows(const std::vector<std::string>& upper, const std::vector<std::string>& lower,
+              const RowsBelow& rows) {
+  const std::vector<double>& values = rows.head.front();
+  const auto first = [&rows](const std::vector<std::string>& fields) {
+    std::vector<double> numbers(fields.size());
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+      const FieldKind kind = cell_kind(fields[c], rows.decimal, numbers[c]);
+      if (kind != rows.kinds[c] && kind != FieldKind::missing) return std::nan("");
+    }
+    return numbers.front();
+  };
+  return values.size() >= 3 && first(lower) < values[0] &&
+         leads_to(first(upper), {first(lower), first(lower) + values[1] - values[0],
+                                 first(lower) + values[2] - values[0]});
 }
 
 }  // namespace config::record

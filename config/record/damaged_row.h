@@ -20,9 +20,15 @@ struct RowsBelow {
 };
 
 /// The first damaged field; none where the line is no row. A line that begins with a number is a
-/// row where it is mostly numbers, stands below the names or where that number leads to the
-/// column's own; any other line is one where all that are no numbers look damaged.
+/// row where it is mostly numbers, where that number leads to the column's own, or below the names
+/// where all but one field are numbers or the first is less than the column's own; any other line
+/// with a number is one where all that are none look damaged.
 [[nodiscard]] std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
                                                        const RowsBelow& rows);
+
+/// True where two lines, one after the other, are earlier rows of the same table: a line between
+/// them and the rows below is one as well, whatever stands in it.
+[[nodiscard]] bool are_rows(const std::vector<std::string>& upper,
+                            const std::vector<std::string>& lower, const RowsBelow& rows);
 
 }  // namespace config::record

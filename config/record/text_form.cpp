@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <utility>
 
 #include "config/record/damaged_row.h"
 #include "config/record/layout.h"
+#include "config/record/limit_line.h"
 #include "config/record/text_fields.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
@@ -215,10 +217,11 @@ class FormFinder {
     std::size_t line = 0;
     std::vector<std::string> names;
     bool units = false;
+    bool limits = false;
     bool commented = false;
   };
 
-  void name_columns() {
+  [[nodiscard]] std::vector<Candidate> lines_above() const {
     std::vector<Candidate> above;
     for (std::size_t i = first_; i-- > 0 && first_ - i < 12;) {
       std::string_view line = lines_[i].text;
@@ -232,33 +235,53 @@ class FormFinder {
         if (above.empty() && commented) continue;  // a comment between header and rows
         break;
       }
-      above.push_back({i, names, is_unit_row(names), commented});
+      const bool limits = is_limit_line(names, form_.dialect.decimal);
+      above.push_back({i, names, is_unit_row(names), limits, commented});
     }
+    return above;
+  }
+
+  void name_columns() {
+    const std::vector<Candidate> above = lines_above();
     const Candidate* units = nullptr;
     const Candidate* header = nullptr;
+    const Candidate* below_units = nullptr;  // words between a line of units and the rows
+    const auto has_units = [](const Candidate& line) {
+      return std::any_of(line.names.begin(), line.names.end(),
+                         [](const std::string& name) { return parse_header(name).unit.known(); });
+    };
     for (const Candidate& candidate : above) {
-      const bool letters = words_known(candidate.names) > 0;
-      if (candidate.units && header == nullptr && units == nullptr) {
+      if (candidate.limits) continue;
+      if (candidate.units && units == nullptr && (header == nullptr || !has_units(*header))) {
         units = &candidate;
-      } else if (letters &&
-                 (header == nullptr || words_known(candidate.names) > words_known(header->names))) {
+        below_units = std::exchange(header, nullptr);
+      } else if (const int known = words_known(candidate.names);
+                 known > 0 && (header == nullptr || known > words_known(header->names))) {
         header = &candidate;
       }
     }
     if (header == nullptr && units != nullptr) {  // "t;u;y" would not be units; "s;V;m" are names
-      header = units;
+      header = below_units != nullptr ? below_units : units;
       units = nullptr;
     }
     if (units != nullptr) {
       form_.units = units->names;
       form_.unit_line = units->line + 1;
     }
-    for (const Candidate& candidate : above) {
+    for (auto each = above.rbegin(); each != above.rend(); ++each) {  // in the order of the file
+      const Candidate& candidate = *each;
       if (&candidate == units || candidate.commented) continue;
       if (header != nullptr && candidate.line < header->line) continue;
-      require_no_row(candidate.line, candidate.names, header == &candidate ? nullptr : header);
+      if (!candidate.limits) {
+        require_no_row(candidate.line, candidate.names, header == &candidate ? nullptr : header);
+      }
+      if (header != nullptr && header != &candidate) {
+        const std::string_view text = trimmed(lines_[candidate.line].text);
+        form_.passed.push_back({candidate.line + 1, std::string(text)});
+      }
     }
     if (header == nullptr) return;
+    require_no_rows_above(*header, above);
     form_.names = header->names;
     for (std::string& name : form_.names) name = clean_text(name);
     form_.header_line = header->line + 1;
@@ -272,12 +295,32 @@ class FormFinder {
     const std::optional<std::size_t> damaged = damaged_field(fields, rows);
     if (!damaged) return;
     const bool named = header != nullptr && !header->names[*damaged].empty();
-    const std::string column =
-        named ? clean_text(header->names[*damaged]) : std::to_string(*damaged + 1);
-    const bool clock = form_.kinds[*damaged] == FieldKind::clock;
+    refuse_field(line, fields[*damaged], *damaged,
+                 named ? clean_text(header->names[*damaged]) : std::to_string(*damaged + 1));
+  }
+
+  [[noreturn]] void refuse_field(std::size_t line, const std::string& field, std::size_t c,
+                                 const std::string& column) const {
+    const bool clock = form_.kinds[c] == FieldKind::clock;
     throw bad_data(name_ + ":" + std::to_string(line + 1),
-                   "column " + column + ": " + record::quoted(fields[*damaged]) +
+                   "column " + column + ": " + record::quoted(field) +
                        (clock ? " is no date and time" : " is no number"));
+  }
+
+  /// Refuses a line of names amid rows: a row of which every field is damaged.
+  void require_no_rows_above(const Candidate& header, const std::vector<Candidate>& above) const {
+    const RowsBelow rows{form_.dialect.decimal, form_.kinds, form_.head};
+    for (std::size_t i = 1; i < above.size(); ++i) {
+      if (above[i - 1].line >= header.line) continue;
+      if (!are_rows(above[i].names, above[i - 1].names, rows)) continue;
+      std::size_t c = 0;
+      const auto fits = [&](std::size_t column) {
+        double value = 0.0;
+        return cell_kind(header.names[column], form_.dialect.decimal, value) == form_.kinds[column];
+      };
+      while (c + 1 < header.names.size() && fits(c)) ++c;
+      refuse_field(header.line, header.names[c], c, std::to_string(c + 1));
+    }
   }
 
   [[nodiscard]] std::string column_words(std::size_t c) const {

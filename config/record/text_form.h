@@ -11,12 +11,19 @@
 
 namespace config::record {
 
+/// A line between names and numbers that is neither units nor a row.
+struct PassedLine {
+  std::size_t line = 0;  ///< from 1
+  std::string text;
+};
+
 struct TextForm {
   TextDialect dialect;
   std::size_t header_line = 0;            ///< from 1; 0: no line names the columns
   std::size_t unit_line = 0;              ///< from 1; 0: none
   std::vector<std::string> names;         ///< as many as there are columns; empty without a header
   std::vector<std::string> units;         ///< likewise; empty without a line of units
+  std::vector<PassedLine> passed;         ///< in the order of the file
   std::vector<FieldKind> kinds;           ///< one per column
   std::vector<ColumnDecimals> decimals;   ///< likewise
   std::vector<CellUnits> cell_units;      ///< likewise

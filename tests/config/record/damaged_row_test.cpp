@@ -27,6 +27,55 @@ TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
   EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
 }
 
+TEST(Csv, RefusesAFirstRowThatSeveralFieldsDamage) {
+  const std::string names = "Time [s],Command [V],Position [mm]\n";
+  expect_bad(names + "0,OL,OL\n" + kRows, ":2", "column Command [V]: 'OL' is no number");
+  expect_bad(names + "-0.005,foo,bar\n" + kRows, ":2", "column Command [V]: 'foo' is no number");
+  expect_bad(names + "OL,OL,0.1\n" + kRows, ":2", "column Time [s]: 'OL' is no number");
+  expect_bad(names + "OL,1,0.1\n" + kRows, ":2", "column Time [s]: 'OL' is no number");
+  expect_bad(names + "0,OL,OL\n0.001,OL,OL\n0.002,1,0.1\n0.003,1,0.1\n0.004,1,0.1\n", ":2",
+             "'OL' is no number");
+  // without names, where its number leads to those below
+  expect_bad("0,foo,bar\n1,1,0.1\n2,2,0.2\n3,2,0.2\n4,2,0.2\n", ":1", "'foo' is no number");
+  // amid rows, where it might pass for names
+  std::string rows = names;
+  for (int k = 0; k < 60; ++k) {
+    rows += k == 20 ? "this,and,that\n" : std::to_string(k) + "," + std::to_string(k % 7) + ",2\n";
+  }
+  expect_bad(rows, ":22", "column 1: 'this' is no number");
+  const std::string dates =
+      "2024-12-01 10:00:00,1,0.1\n2024-12-01 10:00:01,1,0.1\n2024-12-01 10:00:02,1,0.1\n";
+  const std::string what = "column Time: '2024-13-01 10:00:00' is no date and time";
+  expect_bad("Time,Command [V],Position [mm]\n2024-13-01 10:00:00,1,0.1\n" + dates, ":2", what);
+  expect_bad("Time,Command [V],Position [mm]\n2024-13-01 10:00:00,OL,0.1\n" + dates, ":2", what);
+}
+
+TEST(Csv, NotesLinesBetweenNamesAndNumbersThatAreNoRows) {
+  const std::string rows = "0;1;0.1\n0.005;2;0.2\n0.010;3;0.3\n0.015;3;0.3\n";
+  const auto notes = [&](const std::string& above) {
+    const Record record = read(above + rows);
+    EXPECT_EQ(record.size(), 4U) << above;
+    EXPECT_DOUBLE_EQ(record.y_m[0], 1e-4) << above;
+    return record.notes.empty() ? "" : record.notes.back();
+  };
+  const std::string begin = "left out, neither names nor a row: ";
+  const std::string names = "Time;Command;Position\n";
+  const std::string units = "s;V;mm\n";
+  EXPECT_EQ(notes(names + units), "");
+  EXPECT_EQ(notes(names + units + "min;-10;-100\nmax;10;100\n"),
+            begin + "line 3 'min;-10;-100', line 4 'max;10;100'");
+  EXPECT_EQ(notes("sep=;\n" + names + units + "min;-10;-100\n"), begin + "line 4 'min;-10;-100'");
+  EXPECT_EQ(notes(names + "min;-10;-100\n" + units), begin + "line 2 'min;-10;-100'");
+  for (const char* ranges :
+       {"[0..5];[-10..10];[-100..100]", "0..5;-10..10;-100..100", "0 to 5;-10 to 10;0 - 600",
+        ";+/-10;\xC2\xB1 100", "Range;[-10, 10];", "Scale;1;0.001", "1;channel 2;channel 3",
+        ";valve amplifier, X3;rod sensor, X4"}) {
+    EXPECT_EQ(notes(names + units + ranges + "\n"), begin + "line 3 '" + ranges + "'");
+  }
+  EXPECT_EQ(notes("Time [s];Command [V];Position [mm]\nmin;-10;-100\n"),
+            begin + "line 2 'min;-10;-100'");
+}
+
 TEST(Csv, RefusesWordsInPlaceOfTimeCommandOrPosition) {
   expect_bad("t_s;u_V;y_m\n0;on;2\n1;off;2\n2;on;2\n", ":1", "column u_V holds text, not numbers");
   expect_bad("t_s;u_V;y_m\n0;1;x\n1;1;x\n2;1;x\n", ":1", "column y_m holds text, not numbers");

@@ -247,6 +247,23 @@ def logger_with_preamble():
 
 
 @style()
+def names_units_and_limits():
+    return ("Time;Command;Position\ns;V;mm\nmin;-10;0\nmax;10;600\n" + rows([T, U_V, Y_MM], ";", comma=True),
+            truth())
+
+
+@style()
+def names_units_and_ranges():
+    return ("Time;Command;Position\ns;V;mm\n[0..5];[-10..10];[0..600]\n" + rows([T, U_V, Y_MM], ";"), truth())
+
+
+@style()
+def names_units_and_words_below():
+    return ("Time;Command;Position\ns;V;mm\n;valve amplifier, X3;rod sensor, X4\n" + rows([T, U_V, Y_MM], ";"),
+            truth())
+
+
+@style()
 def controldesk_captions_and_units():
     return ("Experiment;Axis 3;\nRecorder;Measurement 1;\n\n"
             "time;Model Root/Controller/u_cmd;Model Root/Rod/Position\ns;V;mm\n" +
@@ -842,6 +859,19 @@ def bad_time_goes_back():
 def bad_word_among_numbers():
     y = ["OVER" if k == 77 else "%.4f" % v for k, v in enumerate(Y_MM)]
     return ("Time [s],Command [V],Position [mm]\n" + rows([T, U_V, y]), refused(":79:", "'OVER' is no number"))
+
+
+@style()
+def bad_first_rows_of_an_overloaded_meter():
+    u, y = (["OL"] * 2 + ["%.4f" % v for v in column[2:]] for column in (U_V, Y_MM))
+    return "Time [s],Command [V],Position [mm]\n" + rows([T, u, y]), refused(":2: column Command [V]: 'OL' is no number")
+
+
+@style()
+def bad_first_date():
+    t = [clock(t, "2024-13-01 " if t == 0 else "2024-12-01 ") for t in T]
+    return ("Time,Command [V],Position [mm]\n" + rows([t, U_V, Y_MM]),
+            refused(":2: column Time: '2024-13-01", "is no date and time"))
 
 
 @style()
