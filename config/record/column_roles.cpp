@@ -285,17 +285,26 @@ class Understanding {
 
   // --- the refusal
 
+  /// The columns that were found, then those that were guessed, each for one role alone.
+  [[nodiscard]] std::array<std::optional<std::size_t>, 3> known() const {
+    std::array<std::optional<std::size_t>, 3> columns;
+    std::set<std::size_t> used;
+    for (std::size_t r = 0; r < columns.size(); ++r) {
+      if (found_[r] && used.insert(found_[r]->column).second) columns[r] = found_[r]->column;
+    }
+    for (std::size_t r = 0; r < columns.size(); ++r) {
+      if (!found_[r] && guess_[r] && used.insert(*guess_[r]).second) columns[r] = guess_[r];
+    }
+    return columns;
+  }
+
   [[nodiscard]] schema::DataError refusal() const {
     const bool nameless = std::all_of(head_.columns.begin(), head_.columns.end(),
                                       [](const FileColumn& c) { return c.header.empty(); });
     std::string what = nameless && !columns_.empty() ? "has no header that names its columns"
                                                      : schema::joined(problems_, "; ");
     what += "; " + listing(head_, columns_);
-    std::array<std::optional<std::size_t>, 3> known = guess_;
-    for (std::size_t r = 0; r < known.size(); ++r) {
-      if (found_[r]) known[r] = found_[r]->column;
-    }
-    if (const std::string map = probable_map(columns_, known, has_rate_); !map.empty())
+    if (const std::string map = probable_map(columns_, known(), taken_, has_rate_); !map.empty())
       what += (nameless ? "; for example: --map " : "; probably: --map ") + map;
     return bad_data(head_.where, what);
   }

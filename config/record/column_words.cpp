@@ -163,6 +163,9 @@ int score(Role role, const ReadColumn& column) {
   if (role == Role::time && column.clock) return kStrong + 5;
   if (column.clock) return 0;
   if (unit.known() && !fits(role, unit.si)) return 0;
+  // Oscilloscopes call the time so; with a unit of length it is an axis of a machine.
+  const bool abscissa = folded(column.text.name) == "xaxis" && !unit.known();
+  if (abscissa && increases(*column.sample)) return role == Role::time ? kStrong : 0;
   if (role == Role::time) {
     if (has_word(column.words, kNoTimeWords)) return 0;
     if (folded(column.text.name) == "xvalue") return kStrong;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 #include "config/record/map_terms.h"
@@ -93,10 +92,11 @@ std::string listing(const FileHead& head, const std::vector<ReadColumn>& columns
 }
 
 std::string probable_map(const std::vector<ReadColumn>& columns,
-                         const std::array<std::optional<std::size_t>, 3>& known, bool has_rate) {
+                         const std::array<std::optional<std::size_t>, 3>& known,
+                         const std::set<std::size_t>& taken, bool has_rate) {
   if (columns.size() < 2) return "";
   std::array<std::optional<std::size_t>, 3> chosen = known;
-  std::set<std::size_t> used;
+  std::set<std::size_t> used = taken;
   for (const std::optional<std::size_t>& column : known) {
     if (column) used.insert(*column);
   }

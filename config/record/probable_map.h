@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,10 @@ namespace config::record {
 [[nodiscard]] std::string listing(const FileHead& head, const std::vector<ReadColumn>& columns);
 
 /// "'t=Time,u=Command,y=3[mm]'". `known` are the columns of time, command and position that are
-/// found already; the others are those whose units, words and values fit best. `has_rate`: without
-/// a time. Empty with fewer than two columns.
+/// found already; the others are those whose units, words and values fit best, `taken` excepted,
+/// which have a use already. `has_rate`: without a time. Empty with fewer than two columns.
 [[nodiscard]] std::string probable_map(const std::vector<ReadColumn>& columns,
                                        const std::array<std::optional<std::size_t>, 3>& known,
-                                       bool has_rate);
+                                       const std::set<std::size_t>& taken, bool has_rate);
 
 }  // namespace config::record

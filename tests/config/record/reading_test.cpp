@@ -195,6 +195,18 @@ TEST(Roles, ProposeAMappingThatReadsColumnsWhoseNamesAreNumbers) {
   EXPECT_THAT(record.y_m, ElementsAre(4.0, 5.0, 6.0));
 }
 
+TEST(Roles, ProposeTheAxisOfAnOscilloscopeForTheTimeAndNoColumnTwice) {
+  const std::string text = "x-axis,1,2\n-1e-3,1,4\n0,2,5\n1e-3,1,6\n";
+  const std::string proposed = "--map 't=x-axis[s],u=1[V],y=2[mm]'";
+  EXPECT_THAT(error_of(text), HasSubstr(proposed));
+  for (const char* map : {"t=x-axis", "u=1", "y=2", "u=1[V],y=1[mm]", "t=x-axis[s],u=1[V],y=1[mm]"})
+    EXPECT_THAT(error_of(text, map), HasSubstr(proposed)) << map;
+  EXPECT_THAT(error_of("x current;1;2\n4;1;2\n5;1;2\n4;1;2\n"),
+              testing::Not(HasSubstr("y=x current")));
+  // an axis of a machine
+  EXPECT_EQ(read("Time [s],Command [V],X-Axis [mm]\n0,1,2\n1,1,3\n2,1,4\n").y_m[2], 4e-3);
+}
+
 TEST(Roles, TakeNoReferenceForAPositionAndNoPositionForACommand) {
   const Record record =
       read("Time [s],Position command [mm],Command [V],Position [mm]\n0,1,2,3\n1,1,2,3\n2,1,2,3\n");

@@ -710,6 +710,19 @@ def bad_keysight_oscilloscope_without_a_mapping():
 
 
 @style()
+def bad_keysight_oscilloscope_without_units():
+    return ("x-axis,1,2\n" + rows([T, U_V, [y / 20 for y in Y_MM]]),
+            refused("x-axis has no unit", "--map 't=x-axis[s],u=1[V],y=2[mm]'"))
+
+
+@style()
+def bad_keysight_oscilloscope_mapped_to_one_channel_twice():
+    return ("x-axis,1,2\n" + rows([T, U_V, [y / 20 for y in Y_MM]]),
+            refused("--map names column 1 twice", "--map 't=x-axis[s],u=1[V],y=2[mm]'",
+                    arguments=["--map", "t=x-axis[s],u=1[V],y=1[mm]"]))
+
+
+@style()
 def time_of_day_with_am_and_pm():
     text = ["%s PM" % clock(t, begin=36720.0) for t in T]
     return "Time,Command (V),Position (mm)\n" + rows([text, U_V, Y_MM]), truth(tolerance=1e-6)
