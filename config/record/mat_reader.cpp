@@ -1,5 +1,7 @@
 #include "config/record/readers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -59,33 +61,52 @@ const MatVariables& scope_of(const MatVariables& variables, const std::string& n
   return found != nullptr ? found->fields : variables;
 }
 
+/// What to type in MATLAB to save the numbers of timeseries; the times are those of the first.
+std::string series_script(const std::vector<std::string>& names) {
+  std::string script = "t = " + names.front() + ".Time; ";
+  std::string saved;
+  for (const std::string& name : names) {
+    const std::string field = name.substr(name.rfind('.') + 1);
+    script += fmt::format("{} = squeeze({}.Data); ", field, name);
+    saved += fmt::format(", \"{}\"", field);
+  }
+  return script + "save(\"vectors.mat\", \"t\"" + saved + ")";
+}
+
+/// The same of timetables, each of which becomes a CSV file.
+std::string table_script(const std::vector<std::string>& names) {
+  const auto one = [](const std::string& name) {
+    const std::string times = name + ".Properties.RowTimes";
+    return name + ".t_s = seconds(" + times + " - " + times + "(1)); writetable(timetable2table(" +
+           name + ", \"ConvertRowTimes\", false), \"" + name + ".csv\")";
+  };
+  return schema::joined_by(names, one, "; ");
+}
+
 /// The variables that are objects of MATLAB's classes, and how to save what is in them; empty
 /// without any.
 std::string object_words(const MatVariables& variables) {
   std::vector<std::string> names;
-  std::string of_class;
-  std::string script;
-  std::string saved;
-  bool all_series = true;
+  std::vector<std::string> classes;
   for (const MatVariable& variable : variables) {
     if (variable.object_class.empty()) continue;
-    const std::string name = printable(variable.name);
-    const bool known = of_class.find(variable.object_class) != std::string::npos;
-    if (!known) of_class += (of_class.empty() ? "" : ", ") + printable(variable.object_class);
-    all_series = all_series && variable.object_class == "timeseries";
-    if (names.empty()) script = "t = " + name + ".Time; ";
-    const std::string field = name.substr(name.rfind('.') + 1);
-    script += field + " = squeeze(" + name + ".Data); ";
-    saved += ", \"" + field + "\"";
-    names.push_back(name);
+    const std::string of_class = printable(variable.object_class);
+    if (std::find(classes.begin(), classes.end(), of_class) == classes.end()) {
+      classes.push_back(of_class);
+    }
+    names.push_back(printable(variable.name));
   }
   if (names.empty()) return "";
-  const std::string words = config::schema::listed(names) +
-                            (names.size() == 1 ? " is an object" : " are objects") + " (" +
-                            of_class + "), whose layout in a file MATLAB does not document; ";
-  if (!all_series)
-    return words + "save its numbers as vectors, of a timeseries ts.Time and ts.Data";
-  return words + "in MATLAB: " + script + "save(\"vectors.mat\", \"t\"" + saved + ")";
+  const std::string words =
+      schema::listed(names) + (names.size() == 1 ? " is an object" : " are objects") + " (" +
+      schema::joined(classes) + "), whose layout in a file MATLAB does not document; ";
+  const bool one_class = classes.size() == 1;
+  if (one_class && classes[0] == "timeseries") return words + "in MATLAB: " + series_script(names);
+  if (one_class && classes[0] == "timetable") return words + "in MATLAB: " + table_script(names);
+  return words +
+         "in MATLAB save vectors: of a timeseries ts, ts.Time and ts.Data; of a timetable tt, "
+         "seconds(tt.Properties.RowTimes) and each tt.NAME; of a Dataset ds, those of each "
+         "timeseries ds{k}.Values";
 }
 
 /// Why it cannot be a column; empty when it can.
@@ -93,7 +114,7 @@ std::string objection(const MatVariable& variable) {
   if (!variable.numeric) return "is of type " + variable.type;
   if (variable.complex) return "is complex";
   if (!variable.values.empty()) return "";
-  return "is " + config::schema::joined(variable.dims, " x ");
+  return "is " + schema::joined(variable.dims, " x ");
 }
 
 /// Every vector of the file under its own name, with its structure's where that is not enough:

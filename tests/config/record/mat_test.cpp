@@ -114,8 +114,12 @@ TEST(Mat, SaysInOneLineHowToSaveWhatIsInMatlabsObjects) {
   EXPECT_EQ(error("one_timeseries"),
             "y is an object (timeseries)" + why +
                 "in MATLAB: t = y.Time; y = squeeze(y.Data); save(\"vectors.mat\", \"t\", \"y\")");
-  EXPECT_THAT(error("timetable"),
-              HasSubstr("log is an object (timetable)" + why + "save its numbers as vectors"));
+  EXPECT_THAT(
+      error("timetable"),
+      HasSubstr(
+          "log is an object (timetable)" + why +
+          "in MATLAB: log.t_s = seconds(log.Properties.RowTimes - log.Properties.RowTimes(1));"
+          " writetable(timetable2table(log, \"ConvertRowTimes\", false), \"log.csv\")"));
   const Record record = read("beside_objects");
   expect_the_motion(record);
   ASSERT_EQ(record.notes.size(), 1U);
