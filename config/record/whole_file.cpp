@@ -57,15 +57,29 @@ bool is_special(const std::filesystem::path& file) {
          std::filesystem::is_socket(status) || std::filesystem::is_block_file(status);
 }
 
+/// The file that a chain of links leads to, which need not exist.
+std::filesystem::path behind_links(const std::filesystem::path& file) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::filesystem::path target = file;
+  for (int links = 0; links <= kMostLinks; ++links) {
+    std::error_code no_link;
+    const std::filesystem::path next = std::filesystem::read_symlink(target, no_link);
+    if (no_link) return target;
+    target = target.parent_path() / next;  // `next` where that is absolute
+  }
+  throw schema::RunError(file.string() + ": cannot be written: " + std::strerror(ELOOP));
+}
+
 }  // namespace
 
 void write_whole(const std::filesystem::path& file, std::string_view text) {
   const bool special = is_special(file);
-  std::filesystem::path temporary = file;
+  const std::filesystem::path target = behind_links(file);
+  std::filesystem::path temporary = special ? file : target;
   if (!special) temporary += ".part" + std::to_string(getpid());
   const int error = write_to(temporary, text, special);
   std::error_code renamed;
-  if (error == 0 && !special) std::filesystem::rename(temporary, file, renamed);
+  if (error == 0 && !special) std::filesystem::rename(temporary, target, renamed);
   if (error != 0 || renamed) {
     const std::string why = renamed ? renamed.message() : std::strerror(error);
     std::error_code ignored;
@@ -73,7 +87,7 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
     throw schema::RunError(file.string() + ": cannot be written: " + why);
   }
   if (special) return;
-  if (const int unsynced = sync_folder(file.parent_path()); unsynced != 0) {
+  if (const int unsynced = sync_folder(target.parent_path()); unsynced != 0) {
     throw schema::RunError(file.string() +
                            ": is written, but its folder cannot be: " + std::strerror(unsynced) +
                            "; a loss of power may bring back the file before");
