@@ -11,17 +11,21 @@ void Lane::end() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
-    waiting_.clear();
+    std::erase_if(waiting_, [](const Entry& entry) { return !entry.kept; });
   }
   wakes_.notify_one();
   if (thread_.joinable()) thread_.join();
 }
 
-void Lane::post(Work work) {
+void Lane::post(Work work) { add({std::move(work)}); }
+
+void Lane::post_kept(Work work) { add({.work = std::move(work), .kept = true}); }
+
+void Lane::add(Entry entry) {
   {
     const std::lock_guard lock(mutex_);
     if (ends_) return;
-    waiting_.push_back({std::move(work)});
+    waiting_.push_back(std::move(entry));
   }
   wakes_.notify_one();
 }
@@ -54,7 +58,7 @@ void Lane::run() {
     {
       std::unique_lock lock(mutex_);
       wakes_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
-      if (ends_) return;
+      if (waiting_.empty()) return;
       work = std::move(waiting_.front().work);
       waiting_.pop_front();
     }

@@ -19,10 +19,13 @@ class Lane {
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;
 
-  /// Waits for what runs; what has not begun is dropped, now and later.
+  /// Waits for what runs and for what post_kept() was given; any other work that has not begun is
+  /// dropped. No work is taken from then on.
   void end();
   /// May be called from any thread.
   void post(Work work);
+  /// The same, of work that end() does not drop.
+  void post_kept(Work work);
   /// Takes the place of earlier work posted so that has not begun; `dropped` of that work is then
   /// called. From any thread.
   void post_latest(Work work, Work dropped);
@@ -32,7 +35,9 @@ class Lane {
   struct Entry {
     Work work;
     Work dropped{};  ///< set: only the latest counts
+    bool kept = false;
   };
+  void add(Entry entry);
   void run();
 
   mutable std::mutex mutex_;

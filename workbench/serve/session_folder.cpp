@@ -172,6 +172,7 @@ std::string SessionFolder::fresh_name(const std::string& name) const {
         (number > 1 ? "-" + std::to_string(number) : "") + wanted.extension().string();
     const std::size_t room = kLongestName - std::min(kLongestName, end.size());
     std::string one = cut(wanted.stem().string(), room) + end;
+    if (reserved_.contains(one)) continue;
     std::error_code ignored;
     if (fs::symlink_status(path_of(one), ignored).type() == fs::file_type::not_found) return one;
   }

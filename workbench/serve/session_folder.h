@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +30,12 @@ class SessionFolder {
   [[nodiscard]] std::string existing(const std::string& name) const;
   /// The path of a file to be written. Throws config::schema::UsageError for an unusable name.
   [[nodiscard]] std::string path_of(const std::string& name) const;
-  /// "stem.toml", or "stem-2.toml" where that exists; a stem too long for a name is cut.
+  /// "stem.toml", or "stem-2.toml" where that exists or is reserved; a stem too long for a name is
+  /// cut.
   [[nodiscard]] std::string fresh_name(const std::string& name) const;
+  /// Keeps fresh_name() from giving `name`, whose file is still to be written.
+  void reserve(const std::string& name) { reserved_.insert(name); }
+  void release(const std::string& name) { reserved_.erase(name); }
   /// A hidden file that an upload is written to.
   [[nodiscard]] std::filesystem::path upload_file() const;
   /// Gives an upload its name, or a fresh one like it; the name that it got. Throws
@@ -48,6 +53,7 @@ class SessionFolder {
  private:
   std::filesystem::path folder_;
   std::string name_;
+  std::set<std::string> reserved_;
 };
 
 /// Name for a model made from `model`: "rig.toml" and "-fitted" make "rig-fitted.toml", and so does

@@ -87,8 +87,7 @@ void Site::end() {
   }
   ends_soon_.notify_one();
   if (folder_watch_.joinable()) folder_watch_.join();
-  jobs_.end();
-  study_lane_.end();
+  end_jobs();
   live_.end();
   control_lane_.end();
   server_ = nullptr;

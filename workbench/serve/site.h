@@ -8,10 +8,10 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -72,11 +72,13 @@ class Site final : public HttpHandler {
   Json begin_diagnosis(const Json& body);
   /// At most ten events a second.
   Jobs::Progress progress();
-  void finish_job(JobResult result, const std::string& parent);
+  void finish_job(JobResult result, const std::string& parent, const std::string& output);
   /// Writes the model of a job, which becomes the trial.
   void take_result(const JobResult& result, const std::string& parent);
-  /// Saves the result that had to wait for the folder.
+  /// Saves the results that had to wait for the folder.
   void take_unsaved();
+  /// Stops the running job; its result and those that wait are written or said to be lost.
+  void end_jobs();
   /// Whether files can be written; what waits for it is then done. `failed`: something was not
   /// written just now.
   void check_folder(bool failed);
@@ -101,7 +103,7 @@ class Site final : public HttpHandler {
     JobResult result;
     std::string parent;
   };
-  std::optional<Unsaved> unsaved_;  ///< a job's result that could not be written
+  std::deque<Unsaved> unsaved_;  ///< results of jobs that could not be written, oldest first
   LiveChannel live_;
   Lane control_lane_;
   Lane study_lane_;

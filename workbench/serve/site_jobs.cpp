@@ -2,6 +2,7 @@
 // are written to, which may be full or gone when they end.
 #include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <mutex>
 #include <utility>
 
@@ -17,67 +18,95 @@ using config::schema::UsageError;
 
 constexpr std::chrono::seconds kFolderPeriod{1};
 
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
 }  // namespace
 
 Site::Json Site::begin_fit(const Json& body) {
   fit::FitRequest request = study_.fit_request(values_in(body));
-  const std::string parent = std::filesystem::path(request.model).filename().string();
-  const bool begun = jobs_.fit(std::move(request), progress(), [this, parent](JobResult result) {
-    finish_job(std::move(result), parent);
-  });
+  const std::string parent = file_name(request.model);
+  const std::string output = file_name(request.output);
+  const bool begun = jobs_.fit(
+      std::move(request), progress(),
+      [this, parent, output](JobResult result) { finish_job(std::move(result), parent, output); });
   if (!begun) throw UsageError("a computation is running already");
+  folder_.reserve(output);
   return {{"ok", true}};
 }
 
 Site::Json Site::begin_diagnosis(const Json& body) {
   diagnose::DiagnosisRequest request = study_.diagnosis_request(texts_in(body, "only"));
-  const std::string parent = std::filesystem::path(request.model).filename().string();
-  const bool begun =
-      jobs_.diagnose(std::move(request), progress(),
-                     [this, parent](JobResult result) { finish_job(std::move(result), parent); });
+  const std::string parent = file_name(request.model);
+  const std::string output = file_name(request.output);
+  const bool begun = jobs_.diagnose(
+      std::move(request), progress(),
+      [this, parent, output](JobResult result) { finish_job(std::move(result), parent, output); });
   if (!begun) throw UsageError("a computation is running already");
+  folder_.reserve(output);
   return {{"ok", true}};
 }
 
-void Site::finish_job(JobResult result, const std::string& parent) {
-  study_lane_.post([this, result = std::move(result), parent] {
+void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
+  study_lane_.post_kept([this, result = std::move(result), parent, output] {
     last_result_ = result.summary;
     std::string error = result.error;
-    unsaved_.reset();
     try {
       take_result(result, parent);
     } catch (const std::exception& failed) {
       error = failed.what();
       check_folder(true);
       if (!trouble_.empty()) {
+        last_result_ = result.summary;
         last_result_["unsaved"] = error;
-        error.clear();
-        unsaved_ = {result, parent};
+        unsaved_.push_back({result, parent});
+        return publish_state();
       }
     }
+    folder_.release(output);
     if (!error.empty()) last_result_ = {{"kind", "error"}, {"words", error}};
     publish_state();
   });
 }
 
 void Site::take_unsaved() {
-  try {
-    take_result(unsaved_->result, unsaved_->parent);
-    last_result_ = unsaved_->result.summary;
-  } catch (const std::exception& failed) {
-    const std::string why = failed.what();
-    trouble_ = folder_.trouble(true);
-    if (!trouble_.empty()) return;
-    last_result_ = {{"kind", "error"}, {"words", why}};
+  while (!unsaved_.empty()) {
+    const JobResult& result = unsaved_.front().result;
+    try {
+      take_result(result, unsaved_.front().parent);
+      last_result_ = result.summary;
+    } catch (const std::exception& failed) {
+      const std::string why = failed.what();
+      trouble_ = folder_.trouble(true);
+      if (!trouble_.empty()) {
+        last_result_ = unsaved_.back().result.summary;
+        last_result_["unsaved"] = why;
+        return;
+      }
+      last_result_ = {{"kind", "error"}, {"words", why}};
+    }
+    folder_.release(file_name(result.model));
+    unsaved_.pop_front();
   }
-  unsaved_.reset();
 }
 
 void Site::take_result(const JobResult& result, const std::string& parent) {
   if (result.model.empty()) return;
   config::record::write_whole(result.model, result.text);
-  const std::string model = std::filesystem::path(result.model).filename().string();
-  study_.take_trial(model, parent, result.what, result.command);
+  study_.take_trial(file_name(result.model), parent, result.what, result.command);
+}
+
+void Site::end_jobs() {
+  jobs_.end();
+  study_lane_.post_kept([this] {
+    if (!unsaved_.empty()) check_folder(false);
+    for (const Unsaved& lost : unsaved_) {
+      std::cerr << "spoolwatch serve: " << file_name(lost.result.model)
+                << ": is not written: " << trouble_ << '\n';
+    }
+  });
+  study_lane_.end();
 }
 
 void Site::check_folder(bool failed) {
@@ -88,7 +117,7 @@ void Site::check_folder(bool failed) {
     } catch (const config::schema::Error& error) {
       trouble_ = error.what();
     }
-    if (trouble_.empty() && unsaved_) take_unsaved();
+    if (trouble_.empty()) take_unsaved();
   }
   if (trouble_ != before) publish_state();
 }

@@ -39,6 +39,28 @@ TEST(Lane, AnExceptionEndsItsOwnWorkAlone) {
   EXPECT_TRUE(done.try_acquire_for(std::chrono::seconds(10)));
 }
 
+TEST(Lane, WhatIsKeptIsDoneBeforeItEndsAndTheRestIsDropped) {
+  std::string done;
+  std::atomic<bool> begun{false};
+  std::atomic<bool> go{false};
+  Lane lane;
+  lane.post([&] {
+    begun = true;
+    while (!go) std::this_thread::yield();
+  });
+  while (!begun) std::this_thread::yield();
+  lane.post([&] { done += 'a'; });
+  lane.post_kept([&] { done += 'b'; });
+  lane.post([&] { done += 'c'; });
+  lane.post_kept([&] { done += 'd'; });
+  std::thread ends([&] { lane.end(); });
+  while (lane.waiting() > 2) std::this_thread::yield();  // the other two are dropped
+  go = true;
+  ends.join();
+  lane.post_kept([&] { done += 'e'; });
+  EXPECT_EQ(done, "bd");
+}
+
 TEST(Lane, OnlyTheLatestOfWhatWaitsIsDone) {
   std::string done;
   std::atomic<bool> begun{false};

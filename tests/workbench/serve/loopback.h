@@ -103,10 +103,15 @@ class ServedFolder {
     host = "127.0.0.1:" + std::to_string(port);
   }
   ~ServedFolder() {
+    end();
+    std::filesystem::remove_all(folder);
+  }
+  /// Ends the server; its folder stays.
+  void end() {
+    if (!serve) return;
     serve->stop();
     thread.join();
     serve.reset();
-    std::filesystem::remove_all(folder);
   }
   ServedFolder(const ServedFolder&) = delete;
   ServedFolder& operator=(const ServedFolder&) = delete;

@@ -1,6 +1,10 @@
 // A session keeps names, files and its state, after refused changes too.
+#include <sys/resource.h>
+
+#include <csignal>
 #include <fstream>
 #include <functional>
+#include <memory>
 
 #include "config/schema/error.h"
 #include "config/schema/read_file.h"
@@ -101,6 +105,74 @@ TEST_F(StudyPage, AFolderThatIsLostIsSaidAndItsSessionIsWrittenAgain) {
   std::filesystem::copy(away / "multisine.csv", page.session);
   ASSERT_EQ(page.post("add", {{"effect", "friction"}}).status, 200);
   EXPECT_EQ(page.state()["trial"], "thesis+null_bias+friction.toml");
+}
+
+TEST_F(StudyPage, AFitThatEndsWithTheServerIsWritten) {
+  ASSERT_EQ(page.post("fit").status, 200);
+  // work before which the result has to wait
+  const std::string body = R"({"spans":["3:5"]})";
+  std::vector<std::unique_ptr<Client>> asking;
+  for (int i = 0; i < 8; ++i) {
+    asking.push_back(std::make_unique<Client>(page.port));
+    (void)asking.back()->send(
+        "POST /api/ignore HTTP/1.1\r\nHost: " + page.host + "\r\nCookie: " + page.cookie +
+        "\r\nX-Spoolwatch-Change: " + page.change +
+        "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) +
+        "\r\n\r\n" + body);
+  }
+  (void)asking.front()->receive(std::chrono::seconds(20), "\r\n\r\n");
+  page.end();
+  EXPECT_TRUE(std::filesystem::exists(page.session / "thesis-fitted.toml"));
+  EXPECT_EQ(Study(SessionFolder(page.session)).state()["trial"], "thesis-fitted.toml");
+}
+
+/// Files of this process can hold 512 bytes at most, as on a disk that is full.
+class FullDisk {
+ public:
+  FullDisk() : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit small = before_;
+    small.rlim_cur = 512;
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*signal_)(int);
+  rlimit before_{};
+};
+
+TEST_F(StudyPage, EveryResultWaitsUntilTheDiskHasRoom) {
+  const auto saved = [this] {
+    return std::filesystem::exists(page.session / "thesis-fitted.toml") &&
+           std::filesystem::exists(page.session / "thesis-fitted-2.toml");
+  };
+  {
+    const FullDisk full;
+    for (int job = 0; job < 2; ++job) {
+      ASSERT_EQ(page.post("fit").status, 200);
+      const ordered_json state = finished();
+      EXPECT_NE(state["trouble"], "");
+      EXPECT_TRUE(state["result"].contains("unsaved")) << state["result"];
+      EXPECT_EQ(state["trial"], "");
+    }
+    EXPECT_FALSE(saved());
+  }
+  for (int i = 0; i < 100 && !saved(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    (void)page.state();
+  }
+  EXPECT_TRUE(saved());
+  const ordered_json state = page.state();
+  EXPECT_EQ(state["trouble"], "");
+  EXPECT_FALSE(state["result"].contains("unsaved"));
+  EXPECT_EQ(state["trial"], "thesis-fitted-2.toml");
+  EXPECT_EQ(state["lineage"].size(), 3U);
 }
 
 TEST(SessionFolder, DerivedNamesDoNotGrow) {
