@@ -1,10 +1,8 @@
 #include "daemon/commission.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
+
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +12,7 @@
 #include <memory>
 #include <ostream>
 
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "daemon/commission_loop.h"
 #include "daemon/control/calibration.h"
@@ -73,23 +72,6 @@ namespace {
 using config::schema::RunError;
 using control::Failure;
 using control::Stage;
-
-/// Replaces the file atomically.
-void write_whole(const std::filesystem::path& file, const std::string& content) {
-  const std::string part = file.string() + ".part";
-  const int fd = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
-  const bool written =
-      fd >= 0 &&
-      write(fd, content.data(), content.size()) == static_cast<ssize_t>(content.size()) &&
-      fsync(fd) == 0;
-  const int error = errno;
-  if (fd >= 0) close(fd);
-  if (!written || std::rename(part.c_str(), file.c_str()) != 0) {
-    const int why = written ? errno : error;
-    unlink(part.c_str());
-    throw RunError(file.string() + ": cannot be written: " + std::strerror(why));
-  }
-}
 
 std::string today(std::int64_t utc_us) {
   const std::time_t now = utc_us / 1'000'000;
@@ -243,7 +225,7 @@ void CommissionSession::write(std::int64_t utc_us) {
   found_.authority_V = limits_.authority_V;
   found_.max_travel_m = limits_.max_travel_m;
   found_.max_speed_mps = limits_.max_speed_mps;
-  write_whole(options_.out, control::print_calibration(found_));
+  config::record::write_whole(options_.out, control::print_calibration(found_));
   out_ << "written: " << options_.out.string() << std::endl;
   const hal::ValveConfig& valve = config_.rig.valve();
   const std::string against =

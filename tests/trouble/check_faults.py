@@ -200,6 +200,9 @@ def main():
             subprocess.run(["rm", "-r", evidence], check=True)
             bad = tries.run(alarmed, fault)
             tries.check(f"evidence: {fault}", bad.returncode == 0 and not any(evidence.iterdir()), bad)
+        calibration = folder / "calibration.toml"
+        tries.writes(["spoolwatchd", "--config", folder / "spoolwatchd.toml", "--commission", calibration, "--yes",
+                      "--clock", "virtual"], calibration)
         setpoints = folder / "setpoints.csv"
         setpoints.write_text("t_s,reference_m\n0,0.3\n10,0.31\n20,0.3\n")
         with_setpoints = folder / "with_setpoints.toml"
