@@ -1,11 +1,35 @@
 #include "workbench/promotion/versions.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <fstream>
 
 #include "config/schema/error.h"
 #include "tests/daemon/program/subprocess.h"
+
+namespace {
+
+/// Folders that may still be synced before every further one fails; negative: all may.
+std::atomic<int> folders_that_sync{-1};
+
+}  // namespace
+
+/// In place of the library's, for this program.
+extern "C" int fsync(int file) {
+  struct stat found {};
+  if (folders_that_sync >= 0 && fstat(file, &found) == 0 && S_ISDIR(found.st_mode) &&
+      folders_that_sync-- <= 0) {
+    folders_that_sync = 0;
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(syscall(SYS_fsync, file));
+}
 
 namespace workbench::promotion {
 namespace {
@@ -79,6 +103,31 @@ TEST(Versions, LeaveAllAsItWasWhenOneCannotBeWritten) {
                config::schema::Error);
   EXPECT_EQ(promotion::read_whole(a), "a0");
   EXPECT_EQ(promotion::newest_version({a}), 0);
+}
+
+TEST(Versions, BringBackEveryFileWhenTheFolderIsNotSynced) {
+  const program::Folder folder;
+  const fs::path a = folder.path() / "a.toml";
+  const fs::path b = folder.path() / "b.toml";
+  const auto promoted = [&] { return promotion::replace({{a, "a1"}, {b, "b1"}}); };
+  // two versions are kept and two files are replaced, each with its folder
+  constexpr int kSyncs = 4;
+  for (int synced = 0; synced < kSyncs; ++synced) {
+    SCOPED_TRACE(synced);
+    write(a, "a0");
+    write(b, "b0");
+    folders_that_sync = synced;
+    EXPECT_THROW(promoted(), config::schema::RunError);
+    folders_that_sync = -1;
+    EXPECT_EQ(promotion::read_whole(a), "a0");
+    EXPECT_EQ(promotion::read_whole(b), "b0");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2)
+        << "no version and no part of a file is left";
+  }
+  folders_that_sync = kSyncs;
+  EXPECT_EQ(promoted(), 1);
+  folders_that_sync = -1;
+  EXPECT_EQ(promotion::read_whole(b), "b1");
 }
 
 }  // namespace
