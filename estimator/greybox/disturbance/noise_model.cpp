@@ -27,6 +27,8 @@ constexpr double kMostWalk_ratio = 150.0;
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
+/// Greatest disturbance, in those that move the rod by the sensor's noise within a second.
+constexpr double kMostDisturbance_units = 1e8;
 /// Largest step of a line's frequency, in bins of the longest record.
 constexpr double kMostStep_bins = 0.25;
 
@@ -313,20 +315,20 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   Likelihood likelihood(model, data, parameters, theta, models, start, threads);
   const double floor_m = data.noise_floor_m;
   const double observer = kObserver_per_s * data.sample_time_s;
-  // a disturbance that moves the rod by the sensor's noise within a second, and what moves it by
-  // ten thousand times as much
+  // a disturbance that moves the rod by the sensor's noise within a second: what an axis of little
+  // damping is shaken by moves it by a million times as much
   const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
   const double walk_m = observer * floor_m;
   const SearchBounds bounds{
       Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
             std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
-      Point(std::log(1e5 * unit), std::log(most_corner_Hz(data)),
+      Point(std::log(kMostDisturbance_units * unit), std::log(most_corner_Hz(data)),
             std::log(kMostWalk_ratio * walk_m), std::log(data.most_sensor_ratio * floor_m))};
   const auto within = [&](const Point& point) -> Point {
     return point.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   };
   std::vector<Point> points;
-  for (const double ratio : {0.1, 3.0, 30.0, 300.0}) {
+  for (const double ratio : {0.1, 3.0, 30.0, 300.0, 3e3, 3e4, 3e5, 3e6}) {
     for (const double corner_Hz : {0.4, 4.0}) {
       points.push_back(within(point_of({ratio * unit, corner_Hz, walk_m, floor_m})));
     }
