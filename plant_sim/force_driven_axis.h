@@ -24,9 +24,10 @@ template <class S>
 class ForceDrivenAxis {
  public:
   static constexpr const char* kName = "force_driven_axis";
-  static constexpr std::array kSites = {effects::Site::command, effects::Site::inertia,
-                                        effects::Site::force,   effects::Site::dry_friction,
-                                        effects::Site::sensor,  effects::Site::coupling};
+  static constexpr std::array kSites = {effects::Site::command,      effects::Site::drive,
+                                        effects::Site::inertia,      effects::Site::force,
+                                        effects::Site::dry_friction, effects::Site::sensor,
+                                        effects::Site::coupling};
 
   struct Parameters {
     S mass_kg = 100.0;
@@ -99,7 +100,8 @@ class ForceDrivenAxis {
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V) {
     const S known_V = limits::known_V(u_V);
-    const S drive_V = effects.command_V(known_V, [&] { return motion(state, known_V); });
+    const S drive_V =
+        effects.drive_V(effects.command_V(known_V, [&] { return motion(state, known_V); }));
     const S parts = divisions();
     const S part_s = S(step_s_) / parts;
     const int most = static_cast<int>(reduce_max(parts));

@@ -27,6 +27,13 @@ class EffectSet : public EffectStore<S, E...> {
     return apply_formulas<Site::command>(u_V, motion);
   }
 
+  /// Call exactly once per step, with command_V().
+  [[nodiscard]] S drive_V(S u_V) {
+    this->template for_each_active<Site::drive>(
+        [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::drive_V(p, memory, u_V); });
+    return u_V;
+  }
+
   /// Call after a reset with the motion that steps begin from.
   template <class Motion>
   void start(Motion&& motion) {

@@ -3,6 +3,7 @@
 // lists in its own kSites which places it has. An effect fits a plant that has all of its sites.
 //
 //   command       S command_V(p, memory, u_V)                once per step, may remember
+//   drive         S drive_V(p, memory, u_V)                  what a motor's drive makes of it
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
 //   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null
@@ -34,6 +35,7 @@ namespace plant_sim::effects {
 
 enum class Site : unsigned {
   command,
+  drive,
   spool,
   opening,
   lap,
@@ -49,9 +51,9 @@ enum class Site : unsigned {
 };
 
 inline const char* site_name(Site site) {
-  constexpr const char* kNames[] = {"command",      "spool",   "opening",      "lap",     "supply",
-                                    "flow",         "leakage", "bulk_modulus", "inertia", "force",
-                                    "dry_friction", "sensor",  "coupling"};
+  constexpr const char* kNames[] = {"command", "drive",        "spool",   "opening",      "lap",
+                                    "supply",  "flow",         "leakage", "bulk_modulus", "inertia",
+                                    "force",   "dry_friction", "sensor",  "coupling"};
   return kNames[static_cast<unsigned>(site)];
 }
 

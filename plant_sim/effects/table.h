@@ -5,6 +5,7 @@
 #include "plant_sim/effects/backlash.h"
 #include "plant_sim/effects/coupled_slaves.h"
 #include "plant_sim/effects/deadband.h"
+#include "plant_sim/effects/drive_lag.h"
 #include "plant_sim/effects/effect_set.h"
 #include "plant_sim/effects/encoder_eccentricity.h"
 #include "plant_sim/effects/entrained_air.h"
@@ -32,6 +33,7 @@ using Effects = EffectSet<S,                 //
                           TransportDelay,    //
                           NullBias,          //
                           ValveHysteresis,   //
+                          DriveLag,          //
                           SpoolRateLimit,    //
                           Deadband,          //
                           FlowAsymmetry,     //

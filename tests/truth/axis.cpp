@@ -26,7 +26,8 @@ State Axis::rate(const State& x, double u_V, double t_s) const {
     r[6] = bristle_rate_mps(z_m, v_mps);
     load_N += hidden.presliding_N_per_m * z_m + hidden.bristle_N_s_per_m * r[6];
   }
-  const double drive_N = plant.gain_N_per_V * u_V;
+  if (hidden.lag_s > 0.0) r[4] = (u_V - x[4]) / hidden.lag_s;
+  const double drive_N = plant.gain_N_per_V * (hidden.lag_s > 0.0 ? x[4] : u_V);
   r[0] = v_mps;
   if (left_out.kind != LeftOut::Kind::elastic_shaft) {
     r[1] = (drive_N - plant.damping_N_s_per_m * v_mps - load_N) / mass_kg_;

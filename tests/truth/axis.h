@@ -2,6 +2,7 @@
 //
 //   M v' = g u - d v - F(y, v)          F: load and friction of machine.h
 //
+// With a lag of the drive z in the place of u: lag z' = u - z, z = 0 at rest.
 // Rotary: the same equation in rad, kg m^2 and N m, under the names of metre, kg and N.
 // With the left-out elastic shaft of stiffness s the motor, 40 % of M, drives the load through it:
 //
@@ -25,7 +26,8 @@ struct AxisPlant {
 /// The axis by its drawing: a linear motor, or a joint (kg m^2, N m s/rad, N m/V).
 AxisPlant printed_axis(bool rotary);
 
-/// State: y, v, twist e, motor speed, two without use, bristle deflection.
+/// State: y, v, twist e, motor speed, what the drive makes of the command, one without use, bristle
+/// deflection.
 class Axis : public Machine {
  public:
   Axis(const AxisPlant& plant, const Hidden& hidden, const LeftOut& left_out);

@@ -73,6 +73,7 @@ void draw_on_axis(const std::string& name, double push, Case& of, Random& random
   const auto force = [&](double typical) { return unit.force * push * random.around(typical); };
   const auto length = [&](double typical) { return unit.length * push * random.around(typical); };
   if (name == "transport_delay") h.delay_s = std::min(0.03, push * random.around(0.006));
+  if (name == "drive_lag") h.lag_s = std::min(0.02, push * random.around(0.006));
   if (name == "load_force") h.force_N = random.sign() * force(8.0);
   if (name == "quadratic_damping") {
     h.quadratic_N_s2_per_m2 = force(400.0) / (unit.length * unit.length);

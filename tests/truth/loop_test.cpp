@@ -51,6 +51,18 @@ TEST(TruthLoop, DelaysTheCommandByTheSameTimeAtAnyRate) {
   }
 }
 
+TEST(TruthLoop, ALagOfTheDriveLosesTheTravelOfItsLength) {
+  Hidden lagging;
+  lagging.lag_s = 0.0075;
+  Rig slow(std::make_unique<Axis>(AxisPlant{}, lagging, LeftOut{}), 0, {}, 0, 0.005);
+  Rig prompt(std::make_unique<Axis>(AxisPlant{}, Hidden{}, LeftOut{}), 0, {}, 0, 0.005);
+  for (long k = 0; k < 2000; ++k) {
+    slow.hold(1.0);
+    prompt.hold(1.0);
+  }
+  EXPECT_NEAR(prompt.x[0] - slow.x[0], 0.0075 * prompt.x[1], 1e-6);
+}
+
 TEST(TruthLoop, ActsAsItsGainsSay) {
   const Case of = of_text(
       "rig=linear_axis,motion=multisine,length_s=3,kp_V_per_m=150,ki_V_per_m_s=80,"

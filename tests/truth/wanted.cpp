@@ -22,7 +22,8 @@ const Names& variants() {
   static const Names names = [] {
     Names found;
     for (const std::string& effect : effects()) {
-      if (effect != "friction") found.push_back(effect);
+      // an axis alone has a drive
+      if (effect != "friction" && effect != "drive_lag") found.push_back(effect);
     }
     found.insert(found.end(), {"friction_coulomb", "friction_stribeck", "friction_presliding"});
     return found;
@@ -153,7 +154,8 @@ Wanted on_axis(std::size_t index) {
   static const std::vector<Names> pairs{{"friction_stribeck", "force_ripple"},
                                         {"friction_coulomb", "load_force"},
                                         {"friction_coulomb", "load_spring"},
-                                        {"friction_stribeck", "transport_delay"}};
+                                        {"friction_stribeck", "transport_delay"},
+                                        {"drive_lag"}};
   const std::size_t turn = index % 12;
   const std::size_t round = index / 12;
   Wanted want;

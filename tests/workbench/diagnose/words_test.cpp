@@ -122,8 +122,9 @@ TEST(Words, EffectsUnderOneDoubtShareASentence) {
   d.possible = {{"friction", selection::Doubt::within_error},
                 {"backlash", selection::Doubt::rivals},
                 {"deadband", selection::Doubt::within_error}};
-  EXPECT_THAT(remarks(outcome), Contains("Not established: friction and deadband (the size "
-                                         "of each is within its error); backlash (others do as well)."));
+  EXPECT_THAT(remarks(outcome),
+              Contains("Not established: friction and deadband (the size "
+                       "of each is within its error); backlash (others do as well)."));
 }
 
 TEST(Words, AliasesOfWhatIsNotEstablishedAreLeftOut) {
