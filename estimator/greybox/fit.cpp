@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "estimator/greybox/parallel_simulation.h"
+#include "estimator/greybox/pressure_scale.h"
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 
@@ -128,6 +129,7 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
     result.sigma_m = problem.sigma;
     break;
   }
+  clear_pressure_scale(model, result);
   result.training_rms_m = rms(result.residual_m, weights);
   result.validation_rms_m = rms(result.residual_m, data.validation_mask);
   return result;

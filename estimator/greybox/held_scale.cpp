@@ -44,15 +44,14 @@ bool has(Names names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// True for a mass, a force, or a force per speed or way: "kg", "N", "N s/m".
+std::string last_word(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
+}  // namespace
+
 bool is_force(const std::string& name) {
   const std::string unit = config::units::unit_of(name);
   return unit == "kg" || unit == "N" || unit.starts_with("N ") || unit.starts_with("N/");
 }
-
-std::string last_word(const std::string& name) { return name.substr(name.rfind('.') + 1); }
-
-}  // namespace
 
 HeldScale held_scale(const plant_sim::ModelFile& model, const std::vector<std::string>& fitted) {
   const auto entry = std::find_if(kScaled.begin(), kScaled.end(),

@@ -22,6 +22,9 @@ struct HeldScale {
   std::vector<std::string> inverse;    ///< fitted parameters that are inversely proportional
 };
 
+/// True for a mass, a force, or a force per speed or way: "kg", "N", "N s/m".
+[[nodiscard]] bool is_force(const std::string& name);
+
 [[nodiscard]] HeldScale held_scale(const plant_sim::ModelFile& model,
                                    const std::vector<std::string>& fitted);
 /// The same as a sentence; empty where there is none.

@@ -1,0 +1,23 @@
+// The direction in which a cylinder's parameters change without any change of its motion.
+//
+//   pressures, masses and forces by s,   flow per root of a pressure by 1/sqrt(s),
+//   flow per pressure by 1/s             the same motion for any s
+//
+// Along it only the priors of the parameters say anything. Difference quotients of a simulation
+// that sticks and slips are rough, and pass for information there.
+#pragma once
+
+#include "estimator/greybox/fit.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox {
+
+/// d theta of that direction, by size arbitrary; empty where a parameter that is held, or at its
+/// bound, ties the others to an absolute scale.
+[[nodiscard]] Eigen::VectorXd pressure_scale(const plant_sim::ModelFile& model,
+                                             const FitSummary& fitted);
+
+/// Takes what the Jacobian seems to know along pressure_scale() out of it.
+void clear_pressure_scale(const plant_sim::ModelFile& model, FitSummary& fitted);
+
+}  // namespace estimator::greybox

@@ -1,0 +1,107 @@
+// The motion of a cylinder along the direction that only priors hold.
+#include "estimator/greybox/pressure_scale.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimator/greybox/dataset_simulation.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox {
+namespace {
+
+plant_sim::ModelFile shipped(const std::string& name) {
+  return plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/" + name);
+}
+
+FitDataset motion() {
+  std::vector<double> u_V;
+  std::vector<double> y_m;
+  for (int k = 0; k < 800; ++k) {
+    u_V.push_back(1.5 * std::sin(0.02 * k) + 0.5 * std::sin(0.31 * k));
+    y_m.push_back(0.3);
+  }
+  Dataset record = dataset_of(0.005, u_V, y_m);
+  record.name = "motion";
+  return fit_dataset({std::move(record)}, {});
+}
+
+/// The model's own parameters and those of its effects, at its values.
+FitSummary fitted_to(const plant_sim::ModelFile& model) {
+  FitSummary fitted;
+  fitted.parameters = plant_parameters(model);
+  for (const FreeParameter& p : present_parameters(model)) fitted.parameters.push_back(p);
+  fitted.theta = start_of(model, fitted.parameters);
+  fitted.at_bound.assign(fitted.parameters.size(), 0);
+  return fitted;
+}
+
+/// RMS by which a free run changes where theta moves by `by`.
+double moved_m(const plant_sim::ModelFile& model, const FitSummary& fitted,
+               const Eigen::VectorXd& by) {
+  const FitDataset data = motion();
+  DatasetSimulation run(model, data, fitted.parameters, 0.0);
+  Eigen::MatrixXd points(fitted.theta.size(), 2);
+  points << fitted.theta, fitted.theta + by;
+  Eigen::MatrixXd residuals_m;
+  run.residuals(points, residuals_m);
+  return std::sqrt((residuals_m.col(1) - residuals_m.col(0)).squaredNorm() /
+                   static_cast<double>(residuals_m.rows()));
+}
+
+plant_sim::ModelFile with_effects() {
+  plant_sim::ModelFile model = shipped("thesis.toml");
+  for (plant_sim::ModelFile::Effect& effect : model.effects) {
+    if (effect.name != "quadratic_damping" && effect.name != "internal_leakage" &&
+        effect.name != "load_force") {
+      continue;
+    }
+    effect.present = true;
+  }
+  *model.value("quadratic_damping.coefficient_N_s2_per_m2") = 18000.0;
+  *model.value("internal_leakage.conductance_m3ps_per_Pa") = 2e-12;
+  *model.value("load_force.force_N") = 300.0;
+  return model;
+}
+
+TEST(PressureScale, DoesNotMoveTheRod) {
+  for (const plant_sim::ModelFile& model : {shipped("thesis.toml"), with_effects()}) {
+    const FitSummary fitted = fitted_to(model);
+    const Eigen::VectorXd along = pressure_scale(model, fitted);
+    ASSERT_EQ(along.size(), fitted.theta.size());
+    const double step = 0.01 / along.norm();
+    Eigen::VectorXd supply = Eigen::VectorXd::Zero(along.size());  // alone it does
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      if (fitted.parameters[static_cast<std::size_t>(i)].name == "supply_pressure_Pa") {
+        supply[i] = step * along[i];
+      }
+    }
+    EXPECT_LT(moved_m(model, fitted, step * along), 0.002 * moved_m(model, fitted, supply));
+  }
+}
+
+TEST(PressureScale, IsTiedByWhatIsHeld) {
+  plant_sim::ModelFile model = shipped("thesis.toml");
+  FitSummary fitted = fitted_to(model);
+  fitted.at_bound[0] = 1;
+  EXPECT_EQ(pressure_scale(model, fitted).size(), 0);
+  fitted.at_bound[0] = 0;
+  *model.value("return_pressure_Pa") = 3e5;
+  EXPECT_EQ(pressure_scale(model, fitted).size(), 0);
+  EXPECT_EQ(pressure_scale(shipped("velocity_servo.toml"), fitted).size(), 0);
+  const plant_sim::ModelFile loaded = with_effects();
+  EXPECT_EQ(pressure_scale(loaded, fitted_to(shipped("thesis.toml"))).size(), 0);
+}
+
+TEST(PressureScale, IsNotSeenByAFit) {
+  const plant_sim::ModelFile model = shipped("thesis.toml");
+  FitSummary fitted = fitted_to(model);
+  const Eigen::VectorXd along = pressure_scale(model, fitted);
+  fitted.jacobian = Eigen::MatrixXd::Random(40, along.size());
+  clear_pressure_scale(model, fitted);
+  EXPECT_LT((fitted.jacobian * along).norm(), 1e-12 * along.norm());
+}
+
+}  // namespace
+}  // namespace estimator::greybox
