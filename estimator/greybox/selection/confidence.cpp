@@ -41,14 +41,27 @@ std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
     return "force";
   }
   if (site == "sensor") return "measurement";
-  if (site == "command") return is_driven_by_force(diagnosis) ? "force" : "command";
+  if (site == "command" || site == "drive")
+    return is_driven_by_force(diagnosis) ? "force" : "command";
   return "flow";
 }
 
-/// True when most of the remaining error enters as this effect does: the law there may be another.
+/// Command, flow and gain are one: each changes what flows.
+bool is_same_site(const std::string& one, const std::string& other) {
+  const auto is_flow = [](const std::string& site) {
+    return site == "flow" || site == "gain" || site == "command";
+  };
+  return one == other || (is_flow(one) && is_flow(other));
+}
+
+/// True when most of the remaining error enters as this effect does: the law there may be another,
+/// or what drifts in time.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
-  return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(diagnosis, effect) &&
-         diagnosis.where.front().explained_ratio > kMostOfRemainder;
+  if (diagnosis.where.empty()) return false;
+  const Localisation& where = diagnosis.where.front();
+  const std::string site = site_of(diagnosis, effect);
+  return where.explained_ratio > kMostOfRemainder &&
+         (where.variable == "time" ? is_same_site(where.site, site) : where.site == site);
 }
 
 /// Squared error of simulations that an effect explains, over that which remains, with the observer
@@ -91,14 +104,6 @@ bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
   return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
-/// Command, flow and gain are one: each changes what flows.
-bool is_same_site(const std::string& one, const std::string& other) {
-  const auto is_flow = [](const std::string& site) {
-    return site == "flow" || site == "gain" || site == "command";
-  };
-  return one == other || (is_flow(one) && is_flow(other));
-}
-
 /// True when a curve that enters elsewhere explains as much as all effects together.
 bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.whole.empty()) return false;
@@ -137,9 +142,8 @@ double chance_of(const StructureSearch& search, const std::string& effect) {
   for (auto round = search.rounds.rbegin(); round != search.rounds.rend(); ++round) {
     if (has(round->before.added)) continue;
     const auto own =
-        std::find_if(round->candidates.begin(), round->candidates.end(), [&](const auto& one) {
-          return one.fitted_at_all && has(one.effects);
-        });
+        std::find_if(round->candidates.begin(), round->candidates.end(),
+                     [&](const auto& one) { return one.fitted_at_all && has(one.effects); });
     if (own != round->candidates.end()) return own->p_value;
   }
   return std::nan("");

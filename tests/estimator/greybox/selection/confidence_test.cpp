@@ -50,6 +50,20 @@ TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
 }
 
+TEST(Confidence, WhatDriftsIsNoOffset) {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  d.missing = {"null_bias"};
+  d.parameters = {{"null_bias.offset_V", -0.091, 0.023, false}};
+  d.rms_before_m = 5e-3;
+  d.rms_after_m = 1e-3;
+  d.steps = {{"", 5e-3}, {"null_bias", 1e-3}};
+  d.where = {{"flow", "v", 0.98}};
+  EXPECT_THAT(named(d), IsEmpty());
+  d.where = {{"flow", "time", 0.98}};
+  EXPECT_THAT(named(d), ElementsAre("null_bias stand_in"));
+}
+
 TEST(Confidence, NothingIsMissingForSureWhereNoEffectIsEstablished) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;

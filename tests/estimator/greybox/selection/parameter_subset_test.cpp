@@ -20,6 +20,7 @@ FitSummary resonance(double mass_ratio, int mass_bound, double damping_ratio, in
 TEST(LeavesItsRange, AResonanceWithoutDampingStandsForSomethingElse) {
   EXPECT_FALSE(leaves_its_range(resonance(0.2, 0, 0.03, 0), 0));
   EXPECT_TRUE(leaves_its_range(resonance(0.2, 0, 0.0, -1), 0));
+  EXPECT_TRUE(leaves_its_range(resonance(0.2, 0, 1e-5, 0), 0));
   EXPECT_TRUE(leaves_its_range(resonance(0.95, 1, 0.03, 0), 0));
   EXPECT_FALSE(leaves_its_range(resonance(0.0, -1, 0.03, 0), 0));  // absent
 }
