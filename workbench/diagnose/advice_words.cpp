@@ -12,6 +12,9 @@
 namespace workbench::diagnose {
 namespace {
 
+/// Share of the remaining error's square below which a place says nothing about the cause.
+constexpr double kNamesACause = 0.3;
+
 std::string number(double value) { return fmt::format("{:.3g}", value); }
 
 /// True when all of them act at one of the sites.
@@ -164,7 +167,12 @@ std::string words_for_motion(const std::vector<std::string>& names, const std::s
 std::string words_for_sensor(const plant_sim::ModelFile& model,
                              const std::vector<std::string>& names) {
   std::string sensor = "the chamber pressures would";
-  if (all_at(model, names, {"command", "spool", "opening", "lap"})) {
+  if (!has_site(model.plant, "opening")) {
+    sensor = any_at(model, names, "sensor") ? "a second position sensor would"
+             : any_at(model, names, "force") || any_at(model, names, "dry_friction")
+                 ? "a load cell, or the motor's current, would"
+                 : "the motor's current would";
+  } else if (all_at(model, names, {"command", "spool", "opening", "lap"})) {
     sensor = "the spool position would";
   } else if (all_at(model, names, {"force", "dry_friction", "inertia"})) {
     sensor = "a load cell at the rod would";
@@ -204,7 +212,7 @@ std::string words_for_changes(const std::vector<selection::ParameterChange>& cha
 std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                   const std::string& plant) {
   const bool axis = !has_site(plant, "opening");
-  if (where.empty()) {
+  if (where.empty() || where.front().explained_ratio < kNamesACause) {
     return std::string("No effect of the library explains the remaining error; record ") +
            (axis ? "the motor's current and the force on the load."
                  : "the chamber pressures and the spool position.");

@@ -113,10 +113,9 @@ Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
   const std::string with = round.before.added.empty()
                                ? "the model as given"
                                : "with " + config::schema::listed(round.before.added);
-  Table table{
-      .caption = "Round " + std::to_string(index + 1) + ", " + with,
-      .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
-                  Column{"× floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
+  Table table{.caption = "Round " + std::to_string(index + 1) + ", " + with,
+              .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
+                          Column{"× floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
   for (const selection::Candidate& candidate : round.candidates) {
     std::vector<std::string> row{config::schema::joined(candidate.effects, " + ")};
     if (!candidate.fitted_at_all) continue;
@@ -168,8 +167,8 @@ Section falling_error_section(const DiagnosisReport& outcome) {
   for (const StepWords& step : steps) {
     plot.categories.push_back(step.what);
     plot.series[0].y.push_back(scale.per_m * step.rms_m);
-    table.rows.push_back({step.what, scale.words(step.rms_m),
-                          config::units::times_words(step.rms_m / d.floor_m())});
+    table.rows.push_back(
+        {step.what, scale.words(step.rms_m), config::units::times_words(step.rms_m / d.floor_m())});
   }
   for (const StepWords& floor : floor_steps(d)) {
     table.rows.push_back({floor.what, scale.words(floor.rms_m),

@@ -177,7 +177,8 @@ std::string fall_words(const selection::Diagnosis& d) {
   return with + " held-out error " + (d.rms_after_m < d.rms_before_m ? "falls" : "goes") +
          " from " + config::units::length_words(d.rms_before_m) + " to " +
          config::units::length_words(d.rms_after_m) + "; " + floor_name(d) + " is " +
-         config::units::length_words(d.floor_m()) + ".";
+         (d.rms_after_m < d.floor_m() ? "no lower."
+                                      : config::units::length_words(d.floor_m()) + ".");
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {

@@ -92,13 +92,15 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   // the disturbance is as large: a fit of simulations follows that
   const std::optional<Disturbance> disturbance = disturbance_of(search, innovations);
   const double sensor_m = sensor_noise_m(search, innovations, result.floor_assumed);
-  const double expected_m = std::max(first.fitted.validation_rms_m,
-                                     std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0));
-  const bool worse = !(held.validation_rms_m <= (1.0 + kClearlyWorse) * expected_m);
   const bool understood =
       innovations.load_sets_in() ||
       (!innovations.physics_missing() &&
        noise_is_credible(search, innovations, sensor_m, disturbance, held.validation_rms_m));
+  const double floor_m = std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0);
+  const double expected_m =
+      std::max((1.0 + kClearlyWorse) * first.fitted.validation_rms_m,
+               (understood ? kBeyondDisturbance : 1.0 + kClearlyWorse) * floor_m);
+  const bool worse = !(held.validation_rms_m <= expected_m);
   if (context.cancelled() || (!worse && understood)) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;

@@ -17,6 +17,8 @@ constexpr double kNear = 1.1;
 /// Limit of the remaining decrease, in decreases like that of the last check.
 constexpr double kPatience = 4.0;
 constexpr int kMostStrides = 8;
+/// Damping ratio of a resonance below which there is none: metal alone has some 0.001.
+constexpr double kLeastDamping = 2e-4;
 /// Share of the error by which a refinement brought back has to lower it.
 constexpr double kRevivedShare = 1e-3;
 
@@ -30,8 +32,9 @@ bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t l
   for (std::size_t i = first; i < last; ++i) {
     const FreeParameter& p = fitted.parameters[i];
     const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
-    const bool damps = p.name.ends_with(".damping_ratio");
-    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0 && !damps;
+    const double theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    if (p.name.ends_with(".damping_ratio") && p.to_physical(theta) < kLeastDamping) return true;
+    const bool absent = theta == 0.0;
     if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
   }
   return false;
