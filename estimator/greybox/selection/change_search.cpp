@@ -290,7 +290,14 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
     }
   }
   // a second change may have stood for an effect
-  if (best->innovations.physics_missing()) return with_effects(*one_change, taken.front());
+  if (one_change->innovations.physics_missing()) {
+    std::optional<ChangeSearch> beside = with_effects(*one_change, taken.front());
+    if (beside && (best->innovations.physics_missing() ||
+                   penalised(beside->innovations.final) < penalised(best->innovations.final))) {
+      return beside;
+    }
+  }
+  if (best->innovations.physics_missing()) return {};
   return best;
 }
 

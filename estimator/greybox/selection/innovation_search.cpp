@@ -26,6 +26,9 @@ constexpr double kInexactLines = 0.0005;
 constexpr double kOutOfReach_nats = 200.0;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
+/// Most turns of the base, by which all candidates are judged: where a disturbance is far above the
+/// sensor's noise, each turn brings it and the plant's parameters apart by a part of the way.
+constexpr int kBaseTurns = 25;
 /// Fastest speed over the RMS of the motion's.
 constexpr double kFastest = 3.0;
 
@@ -169,7 +172,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
   search.memo = TrialMemo(held.rounds);
-  InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
+  InnovationStage stage = settled(context, first, {}, kBaseTurns, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };

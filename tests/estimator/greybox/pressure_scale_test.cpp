@@ -70,7 +70,7 @@ TEST(PressureScale, DoesNotMoveTheRod) {
     const FitSummary fitted = fitted_to(model);
     const Eigen::VectorXd along = pressure_scale(model, fitted);
     ASSERT_EQ(along.size(), fitted.theta.size());
-    const double step = 0.01 / along.norm();
+    const double step = 0.001 / along.norm();
     Eigen::VectorXd supply = Eigen::VectorXd::Zero(along.size());  // alone it does
     for (Eigen::Index i = 0; i < along.size(); ++i) {
       if (fitted.parameters[static_cast<std::size_t>(i)].name == "supply_pressure_Pa") {

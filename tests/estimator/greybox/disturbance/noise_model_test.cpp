@@ -28,6 +28,24 @@ TEST(NoiseModel, ARandomForceIsMeasured) {
   EXPECT_NEAR(intensity, 30.0 * std::sqrt(3.0), 0.25 * 30.0 * std::sqrt(3.0));
 }
 
+// A linear encoder of 0.1 um on an axis of little damping: the force moves it by millimetres.
+TEST(NoiseModel, ARandomForceFarAboveTheSensorsNoiseIsMeasured) {
+  const truth::Record record = truth::simulate(
+      truth::parse_case("rig=linear_axis,motion=multisine,length_s=20,encoder_m=1e-7,noise_m=3e-7,"
+                        "outside.force_N=10,outside.corner_Hz=2",
+                        44));
+  const auto model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                           "/config/models/force_driven_axis.toml");
+  const selection::SearchContext context{
+      selection::make_problem(model, fit_dataset({diagnose_test::dataset_of(record)}, {})), {}};
+  const selection::InnovationStage stage =
+      selection::settled(context, selection::first_stage(context), {}, 25, wide(2));
+  const NoiseParameters& found = stage.noise.noise;
+  const double intensity = found.disturbance_sd * std::sqrt(found.corner_Hz);
+  EXPECT_NEAR(intensity, 10.0 * std::sqrt(2.0), 0.1 * 10.0 * std::sqrt(2.0));
+  EXPECT_LT(found.walk_m, 1e-7);
+}
+
 TEST(NoiseModel, TheLikeliestOneDoesNotDependOnTheStart) {
   const selection::SearchContext context = context_of(
       "motion=multisine,length_s=20,outside.force_N=20,outside.corner_Hz=5,"
