@@ -90,6 +90,11 @@ RecordColumn column_of(const std::string& name, const std::string& unit_beside,
     named = {column.stem, {name.substr(column.stem.size() + 1), column.si_unit, column.factor}};
   }
   if (named.unit.known() && !same_unit(named.unit, unit)) {
+    // "p_A" of another dimension is a port: what stands beside the name says more
+    const bool further = main_of(column) == nullptr && !is_time(column);
+    if (further && named.unit.si != unit.si) {
+      return {name, unit.si, name + "_" + unit.si, unit.factor};
+    }
     throw bad_data(where,
                    "column " + name + " names two units, " + named.unit.text + " and " + unit.text);
   }

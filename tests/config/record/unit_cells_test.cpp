@@ -52,6 +52,10 @@ TEST(Csv, CarriesTheUnitOfItsCellsIntoAFurtherColumnBesideTheOwnNames) {
   ASSERT_NE(line.column("i_A"), nullptr);
   EXPECT_DOUBLE_EQ(line.column("i_A")->at(2), 6e-3);
   const std::string rows = "0;1;2;50\n1;1;2;51\n2;1;2;52\n";
+  // port A, no current
+  const Record port = read("t_s;u_V;y_m;p_A\ns;V;m;bar\n" + rows);
+  ASSERT_NE(port.column("p_A_Pa"), nullptr);
+  EXPECT_EQ(port.column("p_A_Pa")->at(2), 52e5);
   expect_bad("t_s;u_V;y_m;p\ns;mV;m;bar\n" + rows, ":1", "column u_V names two units, V and mV");
   expect_bad("t_s;u_V;y_m;p_kPa\ns;V;m;bar\n" + rows, ":1", "p_kPa names two units, kPa and bar");
   expect_bad("t_s;u_V;y_m;i_mA\ns;V;m;A\n" + rows, ":1", "column i_mA names two units, mA and A");
