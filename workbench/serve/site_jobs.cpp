@@ -50,6 +50,7 @@ Site::Json Site::begin_diagnosis(const Json& body) {
 
 void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
   study_lane_.post_kept([this, result = std::move(result), parent, output] {
+    if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
     last_result_ = result.summary;
     std::string error = result.error;
     try {
