@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -15,49 +16,61 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 /// Flows per root of a pressure, or openings that stand for them.
-constexpr std::array<std::string_view, 6> kOpenings{
-    "valve_gain_m_per_V",           "rated_flow_m3ps",
-    "retracted_cushion_orifice_m2", "extended_cushion_orifice_m2",
-    "retracted_cushion_flow_m3ps",  "extended_cushion_flow_m3ps"};
-/// Parameters of effects whose laws have a pressure of their own, or are not known to scale.
-constexpr std::array<std::string_view, 2> kAbsolute{"entrained_air.", "change."};
+constexpr std::array<std::string_view, 2> kOpenings{"valve_gain_m_per_V", "rated_flow_m3ps"};
+/// Effects and tables whose laws have a pressure or a flow of their own, or differ between plants.
+constexpr std::array<std::string_view, 3> kAbsolute{"entrained_air.", "spool_rate_limit.",
+                                                    "change."};
 
 /// Power of the scale with which a parameter changes.
 double power_of(const std::string& name) {
   const std::string word = name.substr(name.rfind('.') + 1);
-  const std::string unit = config::units::unit_of(name);
   if (is_force(name) || word == "droop_Pa_per_m3ps") return 1.0;
-  if (unit == "Pa" && word != "rated_drop_Pa") return 1.0;
+  if (config::units::unit_of(name) == "Pa" && word != "rated_drop_Pa") return 1.0;
   if (word == "conductance_m3ps_per_Pa") return -1.0;
-  if (std::find(kOpenings.begin(), kOpenings.end(), word) != kOpenings.end()) return -0.5;
-  // travel of the spool stands for an opening where the valve's gain does
-  if (word == "rate_mps") return -0.5;
-  return 0.0;
+  return std::find(kOpenings.begin(), kOpenings.end(), word) != kOpenings.end() ? -0.5 : 0.0;
 }
 
+/// True for a parameter whose law is not known to scale, or that one record has for itself.
 bool is_absolute(const std::string& name) {
-  return std::any_of(kAbsolute.begin(), kAbsolute.end(),
+  return name.find(kInRecord) != std::string::npos ||
+         std::any_of(kAbsolute.begin(), kAbsolute.end(),
                      [&](std::string_view prefix) { return name.starts_with(prefix); });
 }
 
+/// True where the model has something that an absolute pressure or flow belongs to.
+bool has_absolute(const plant_sim::ModelFile& model) {
+  if (!model.formula_effects.empty() || !model.changes.empty()) return true;
+  const auto given = [](const plant_sim::NamedValue& one) {
+    return one.name.starts_with("pressure_") && std::isfinite(one.value);
+  };
+  const auto cushion = [](const plant_sim::NamedValue& one) {
+    return one.name.find("cushion_length_m") != std::string::npos && one.value > 0.0;
+  };
+  return std::any_of(model.initial.begin(), model.initial.end(), given) ||
+         std::any_of(model.parameters.begin(), model.parameters.end(), cushion);
+}
+
 /// True when a parameter that scales is not among the fitted ones.
-bool ties(plant_sim::ModelFile& model, const FitSummary& fitted, const std::string& name) {
-  const double* value = model.value(name);
-  if (value == nullptr || *value == 0.0 || power_of(name) == 0.0) return false;
+bool ties(const FitSummary& fitted, const std::string& name, double value) {
+  if (value == 0.0 || power_of(name) == 0.0) return false;
   return std::none_of(fitted.parameters.begin(), fitted.parameters.end(),
                       [&](const FreeParameter& p) { return p.name == name; });
 }
 
 }  // namespace
 
-VectorXd pressure_scale(const plant_sim::ModelFile& file, const FitSummary& fitted) {
-  plant_sim::ModelFile model = file;
-  if (model.value("supply_pressure_Pa") == nullptr || !model.formula_effects.empty()) return {};
-  std::vector<std::string> names{"return_pressure_Pa"};
-  for (const FreeParameter& p : plant_parameters(model)) names.push_back(p.name);
-  for (const FreeParameter& p : present_parameters(model)) names.push_back(p.name);
-  for (const std::string& name : names) {
-    if (is_absolute(name) || ties(model, fitted, name)) return {};
+VectorXd pressure_scale(const plant_sim::ModelFile& model, const FitSummary& fitted) {
+  const auto is_supply = [](const auto& one) { return one.name == "supply_pressure_Pa"; };
+  if (std::none_of(model.parameters.begin(), model.parameters.end(), is_supply)) return {};
+  if (has_absolute(model)) return {};
+  for (const plant_sim::NamedValue& one : model.parameters) {
+    if (ties(fitted, one.name, one.value)) return {};
+  }
+  for (const plant_sim::ModelFile::Effect& effect : model.effects) {
+    for (const plant_sim::NamedValue& one : effect.parameters) {
+      const std::string name = effect.name + "." + one.name;
+      if (effect.present && (is_absolute(name) || ties(fitted, name, one.value))) return {};
+    }
   }
   VectorXd along = VectorXd::Zero(fitted.theta.size());
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {

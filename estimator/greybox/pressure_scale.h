@@ -12,12 +12,12 @@
 
 namespace estimator::greybox {
 
-/// d theta of that direction, by size arbitrary; empty where a parameter that is held, or at its
-/// bound, ties the others to an absolute scale.
+/// d theta of that direction, of arbitrary length; empty where something ties the parameters to an
+/// absolute scale: one that is held or at its bound, a pressure that is given, a formula, a change.
 [[nodiscard]] Eigen::VectorXd pressure_scale(const plant_sim::ModelFile& model,
                                              const FitSummary& fitted);
 
-/// Takes what the Jacobian seems to know along pressure_scale() out of it.
+/// Removes the Jacobian's apparent information along pressure_scale().
 void clear_pressure_scale(const plant_sim::ModelFile& model, FitSummary& fitted);
 
 }  // namespace estimator::greybox

@@ -54,7 +54,8 @@ plant_sim::ModelFile with_effects() {
   plant_sim::ModelFile model = shipped("thesis.toml");
   for (plant_sim::ModelFile::Effect& effect : model.effects) {
     if (effect.name != "quadratic_damping" && effect.name != "internal_leakage" &&
-        effect.name != "load_force") {
+        effect.name != "load_force" && effect.name != "supply_droop" &&
+        effect.name != "external_leakage") {
       continue;
     }
     effect.present = true;
@@ -62,6 +63,8 @@ plant_sim::ModelFile with_effects() {
   *model.value("quadratic_damping.coefficient_N_s2_per_m2") = 18000.0;
   *model.value("internal_leakage.conductance_m3ps_per_Pa") = 2e-12;
   *model.value("load_force.force_N") = 300.0;
+  *model.value("supply_droop.droop_Pa_per_m3ps") = 6e9;
+  *model.value("external_leakage.conductance_m3ps_per_Pa") = 1e-12;
   return model;
 }
 
@@ -70,6 +73,7 @@ TEST(PressureScale, DoesNotMoveTheRod) {
     const FitSummary fitted = fitted_to(model);
     const Eigen::VectorXd along = pressure_scale(model, fitted);
     ASSERT_EQ(along.size(), fitted.theta.size());
+    // what is left is of second order in the step, a leakage and a load being linear parameters
     const double step = 0.001 / along.norm();
     Eigen::VectorXd supply = Eigen::VectorXd::Zero(along.size());  // alone it does
     for (Eigen::Index i = 0; i < along.size(); ++i) {
@@ -90,6 +94,14 @@ TEST(PressureScale, IsTiedByWhatIsHeld) {
   *model.value("return_pressure_Pa") = 3e5;
   EXPECT_EQ(pressure_scale(model, fitted).size(), 0);
   EXPECT_EQ(pressure_scale(shipped("velocity_servo.toml"), fitted).size(), 0);
+  plant_sim::ModelFile gauged = shipped("thesis.toml");  // its supply pressure was read
+  for (plant_sim::NamedValue& prior : gauged.priors) {
+    if (prior.name == "supply_pressure_Pa") prior.value = 0.0;
+  }
+  EXPECT_EQ(pressure_scale(gauged, fitted_to(gauged)).size(), 0);
+  plant_sim::ModelFile changing = shipped("thesis.toml");
+  changing.changes.resize(1);
+  EXPECT_EQ(pressure_scale(changing, fitted_to(changing)).size(), 0);
   const plant_sim::ModelFile loaded = with_effects();
   EXPECT_EQ(pressure_scale(loaded, fitted_to(shipped("thesis.toml"))).size(), 0);
 }
