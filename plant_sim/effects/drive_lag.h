@@ -1,12 +1,12 @@
-// What drives the axis follows the command with a lag: a current loop, an amplifier's filter.
+// The drive of an axis follows the command with a lag: a current loop, an amplifier's filter.
 //
 //   lag u_out' = u - u_out
 //
 // lag  s, time constant; before the run u_out was the first command
-// The command is held over a step; the mean of u_out over the step acts, which moves the axis as
-// u_out does. A lag in the place of a dead time of the same length differs in what is fast alone.
-// Source: first-order model of the closed current loop, Ellis, Control System Design Guide (2012),
-// chapter 14.
+// The command is held over a step; the mean of u_out over the step acts, which leaves the axis with
+// the speed that u_out gives it. A lag in the place of a dead time of the same length differs in
+// what is fast alone. Source: first-order model of the closed current loop, Ellis, Control System
+// Design Guide (2012), chapter 14.
 #pragma once
 
 #include <array>
@@ -29,9 +29,7 @@ struct DriveLag {
 
     template <class V>
     void visit(V&& v) {
-      v(ParameterInfo{"lag_s", "time constant of what makes a force of the command", 0.0, 0.5,
-                      0.005, 0.0},
-        lag_s);
+      v(ParameterInfo{"lag_s", "time constant of the drive", 0.0, 0.5, 0.005, 0.0}, lag_s);
     }
   };
   struct Memory {

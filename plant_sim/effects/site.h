@@ -3,7 +3,7 @@
 // lists in its own kSites which places it has. An effect fits a plant that has all of its sites.
 //
 //   command       S command_V(p, memory, u_V)                once per step, may remember
-//   drive         S drive_V(p, memory, u_V)                  what a motor's drive makes of it
+//   drive         S drive_V(p, memory, u_V)                  command after a motor's drive
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
 //   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null

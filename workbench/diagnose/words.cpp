@@ -111,7 +111,7 @@ std::string doubt_words(selection::Doubt doubt, bool several) {
       return several ? "the size of each is within its error" : "its size is within its error";
     case selection::Doubt::chance:
       return std::string("what ") + (several ? "each" : "it") +
-             " gains differs so much over the record that it may be chance";
+             " gains is so uneven over the record that it may be chance";
     case selection::Doubt::rivals:
       return "others do as well";
     case selection::Doubt::remainder:
@@ -176,9 +176,10 @@ std::string fall_words(const selection::Diagnosis& d) {
                                : "The";
   return with + " held-out error " + (d.rms_after_m < d.rms_before_m ? "falls" : "goes") +
          " from " + config::units::length_words(d.rms_before_m) + " to " +
-         config::units::length_words(d.rms_after_m) + "; " + floor_name(d) + " is " +
-         (d.rms_after_m < d.floor_m() ? "no lower."
-                                      : config::units::length_words(d.floor_m()) + ".");
+         config::units::length_words(d.rms_after_m) +
+         (d.rms_after_m < d.floor_m() ? ", within " + floor_name(d) + ", "
+                                      : "; " + floor_name(d) + " is ") +
+         config::units::length_words(d.floor_m()) + ".";
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {

@@ -315,8 +315,8 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   Likelihood likelihood(model, data, parameters, theta, models, start, threads);
   const double floor_m = data.noise_floor_m;
   const double observer = kObserver_per_s * data.sample_time_s;
-  // a disturbance that moves the rod by the sensor's noise within a second: what an axis of little
-  // damping is shaken by moves it by a million times as much
+  // a disturbance that moves the rod by the sensor's noise within a second; an axis with little
+  // damping and a fine sensor moves by a million times as much
   const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
   const double walk_m = observer * floor_m;
   const SearchBounds bounds{

@@ -2,23 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <string>
 #include <utility>
 
 #include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
-#include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostChanges = 2;
-/// Effects that may be missing beside a change, and what the change must have gained over the
-/// largest curve that remains, for effects to be sought.
-constexpr std::size_t kMostEffectsBeside = 2;
-constexpr double kMostOfError = 2.0;
 /// Gain of a curve over the motion, in those of the best change, from which on laws are sought
 /// first.
 constexpr double kMotionExplains = 2.0;
@@ -235,36 +228,6 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
   return found;
 }
 
-/// What a change alone leaves, explained by effects beside it; none where physics still is missing,
-/// or where the change has not explained most of the error.
-std::optional<ChangeSearch> with_effects(const ChangeSearch& change, const ChangeScore& taken) {
-  const InnovationSearch& found = change.innovations;
-  const double gained_nats = 0.5 * (penalised(found.before) - penalised(found.final));
-  if (found.load_sets_in() || !(gained_nats > kMostOfError * found.curve_nats)) return {};
-  ChangeSearch search = change;
-  InnovationStage stage = found.final;
-  std::set<std::string> dropped;
-  const std::size_t most = stage.model.added.size() + kMostEffectsBeside;
-  std::vector<InnovationRound> rounds;
-  bool more = true;
-  while (more && stage.model.added.size() < most && !search.context.cancelled()) {
-    const RoundOptions options{Candidates::effects_and_lines, most,
-                               kEvidence_nats + found.inexact_nats};
-    more = extend(search.context, stage, options, search.innovations.memo, rounds, dropped) &&
-           leaves_physics(stage);
-  }
-  if (stage.model.added.size() == found.final.model.added.size()) return {};
-  for (InnovationRound& round : rounds) {
-    if (!round.taken) continue;
-    const InnovationCandidate& one = round.candidates.front();
-    if (!one.effect.empty()) search.innovations.gains_nats[one.effect] = one.gain_nats;
-    search.innovations.rounds.push_back(std::move(round));
-  }
-  search = concluded(std::move(search), std::move(stage), {taken});
-  if (search.innovations.physics_missing()) return {};
-  return search;
-}
-
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
 /// first one leaves.
 std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage stage) {
@@ -272,13 +235,11 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
   const ChangeSearch begun = search;
   const InnovationStage first = stage;
   std::optional<ChangeSearch> best;
-  std::optional<ChangeSearch> one_change;
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
     ChangeSearch found = concluded(search, stage, taken);
     const auto cost = [](const ChangeSearch& one) { return penalised(one.innovations.final); };
     const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
-    if (!one_change) one_change = found;
     if (best && !(cost(found) < cost(*best) - 2.0 * enough_nats)) break;
     best = std::move(found);
   }
@@ -287,14 +248,6 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
     const std::optional<ChangeSearch> one = last_alone(begun, first, taken, *best);
     if (one && (!one->innovations.physics_missing() || best->innovations.physics_missing())) {
       best = one;
-    }
-  }
-  // a second change may have stood for an effect
-  if (one_change->innovations.physics_missing()) {
-    std::optional<ChangeSearch> beside = with_effects(*one_change, taken.front());
-    if (beside && (best->innovations.physics_missing() ||
-                   penalised(beside->innovations.final) < penalised(best->innovations.final))) {
-      return beside;
     }
   }
   if (best->innovations.physics_missing()) return {};

@@ -21,6 +21,8 @@ namespace {
 /// linearised models.
 constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
+/// Error of a simulation over what sensor and disturbance cause, above which they are not all.
+constexpr double kBeyondDisturbance = 2.0;
 /// A great force without memory, its corner at the highest that is searched for, is what a model
 /// lacks from sample to sample.
 constexpr double kWhite = 0.95;

@@ -18,9 +18,6 @@ namespace estimator::greybox::selection {
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);
 
-/// Error of a simulation over what sensor and disturbance cause, above which they are not all.
-inline constexpr double kBeyondDisturbance = 2.0;
-
 /// Noise of the sensor: the data set's floor, or the noise model's where that is no more than a
 /// bound.
 [[nodiscard]] double sensor_noise_m(const SearchContext& search,

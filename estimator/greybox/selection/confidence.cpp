@@ -55,13 +55,14 @@ bool is_same_site(const std::string& one, const std::string& other) {
 }
 
 /// True when most of the remaining error enters as this effect does: the law there may be another,
-/// or what drifts in time.
+/// or an offset may drift in time.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.where.empty()) return false;
   const Localisation& where = diagnosis.where.front();
   const std::string site = site_of(diagnosis, effect);
   return where.explained_ratio > kMostOfRemainder &&
-         (where.variable == "time" ? is_same_site(where.site, site) : where.site == site);
+         (where.site == site ||
+          (where.variable == "time" && effect == "null_bias" && is_same_site(where.site, site)));
 }
 
 /// Squared error of simulations that an effect explains, over that which remains, with the observer
@@ -144,19 +145,22 @@ double chance_of(const StructureSearch& search, const std::string& effect) {
     const auto own =
         std::find_if(round->candidates.begin(), round->candidates.end(),
                      [&](const auto& one) { return one.fitted_at_all && has(one.effects); });
-    if (own != round->candidates.end()) return own->p_value;
+    // 1: too few blocks of held-out data to say
+    if (own != round->candidates.end()) return own->p_value < 1.0 ? own->p_value : std::nan("");
   }
   return std::nan("");
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
 std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
-  if (chance_of(diagnosis.search, effect) > kLikelyChance) return Doubt::chance;
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
     if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
   }
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
   if (is_beyond_doubt(diagnosis, effect)) return {};
+  if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect) > kLikelyChance) {
+    return Doubt::chance;
+  }
   if (likely_ratio(diagnosis, effect) < kClearOfRemainder &&
       !(simulated_ratio(diagnosis, effect) >= kClearOfRemainder)) {
     return Doubt::remainder;

@@ -25,6 +25,9 @@ constexpr double kFarFromFloor = 10.0;
 /// Rise of a simulation's held-out error that a disturbance, of which a record has few periods,
 /// does not cause by chance.
 constexpr double kClearlyWorse = 0.25;
+/// The same over the error that the disturbance causes on average, where nothing else is missing: a
+/// slow one moves an axis for long.
+constexpr double kSlowDisturbance = 0.6;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
 
@@ -99,7 +102,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const double floor_m = std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0);
   const double expected_m =
       std::max((1.0 + kClearlyWorse) * first.fitted.validation_rms_m,
-               (understood ? kBeyondDisturbance : 1.0 + kClearlyWorse) * floor_m);
+               (1.0 + (understood ? kSlowDisturbance : kClearlyWorse)) * floor_m);
   const bool worse = !(held.validation_rms_m <= expected_m);
   if (context.cancelled() || (!worse && understood)) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
@@ -224,7 +227,8 @@ double Diagnosis::disturbed_floor_m() const {
 }
 
 bool Diagnosis::repetitions_set_floor() const {
-  return repetition && repetition->scatter_m > disturbed_floor_m();
+  return repetition && repetition->scatter_m > disturbed_floor_m() &&
+         repetition->scatter_m < rms_after_m;
 }
 
 double Diagnosis::floor_m() const {

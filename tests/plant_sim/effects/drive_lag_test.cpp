@@ -53,13 +53,16 @@ TEST(DriveLag, ForgetsTheLastRunAtReset) {
 }
 
 TEST(DriveLag, IsForAxesAlone) {
+  int found = 0;
   for (const EffectInfo& effect : effect_library()) {
     if (effect.name != "drive_lag") continue;
+    ++found;
     for (const char* plant : {"velocity_servo", "hydraulic_actuator", "hydraulic_cylinder"}) {
       const auto& sites = find_plant(plant)->sites;
       EXPECT_EQ(std::count(sites.begin(), sites.end(), effect.sites.front()), 0) << plant;
     }
   }
+  EXPECT_EQ(found, 1);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/selection/change_scores.h"
@@ -49,19 +48,6 @@ TEST(Changes, AGainThatStepsIsDatedToASample) {
   // the better model has it
   ASSERT_THAT(d.better.changes, SizeIs(1));
   EXPECT_NEAR(d.better.changes.front().value, 1.03 * kServoGain, 1e-4);
-}
-
-TEST(Changes, AnEffectIsFoundBesideADrift) {
-  const SearchContext context = servo_context({.rate_mps = [](double u_V, double, double t_s) {
-    const double drive_V = u_V + 0.01 * t_s;
-    return kServoGain * (drive_V - std::clamp(drive_V, -0.1, 0.1));
-  }});
-  const Diagnosis d = diagnose(context.problem, context.options);
-  EXPECT_EQ(d.verdict, Verdict::changing);
-  EXPECT_THAT(d.missing, testing::ElementsAre("deadband"));
-  ASSERT_THAT(d.changing, SizeIs(1));
-  EXPECT_EQ(d.changing.front().parameter, "null_bias.offset_V");
-  EXPECT_LT(d.rms_after_m, 1.15 * d.noise_floor_m);
 }
 
 TEST(Changes, AKnownGainThatStepsIsScoredAsAStep) {

@@ -37,15 +37,27 @@ TEST(Confidence, ASizeWithinItsErrorIsNotEstablishedWhateverItsRefinements) {
 
 TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   Diagnosis d = unexplained();
+  d.rms_before_m = 5e-3;
+  d.rms_after_m = 1e-3;
+  d.steps = {{"", 5e-3}, {"friction", 1e-3}, {"backlash", 1e-3}};
   Candidate friction;
   friction.effects = {"friction"};
   friction.fitted_at_all = true;
   friction.p_value = 0.2;
   d.search.rounds = {Round{{}, {friction}}};
   EXPECT_THAT(named(d), ElementsAre("friction chance", "backlash within_error"));
-  d.search.rounds[0].candidates[0].p_value = 0.02;
+  double& p = d.search.rounds[0].candidates[0].p_value;
+  p = 0.02;
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
-  d.search.rounds[0].candidates[0].p_value = 0.2;
+  p = 1.0;  // not known
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  p = 0.2;
+  d.by_innovations = true;
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.by_innovations = false;
+  d.steps[1].validation_rms_m = d.rms_after_m = 1e-4;  // it explains nearly everything
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.rms_after_m = 1e-3;
   d.verdict = Verdict::missing;  // the error is at the floor
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
 }
