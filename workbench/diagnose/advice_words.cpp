@@ -199,6 +199,7 @@ std::string words_for_changes(const std::vector<selection::ParameterChange>& cha
                                       [](const auto& change) { return !change.record.empty(); });
   if (between) {
     std::vector<std::string> records;
+    records.reserve(changes.size());
     for (const selection::ParameterChange& change : changes) records.push_back(change.record);
     std::sort(records.begin(), records.end());
     records.erase(std::unique(records.begin(), records.end()), records.end());
