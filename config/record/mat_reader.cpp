@@ -61,7 +61,7 @@ const MatVariables& scope_of(const MatVariables& variables, const std::string& n
   return found != nullptr ? found->fields : variables;
 }
 
-/// What to type in MATLAB to save the numbers of timeseries; the times are those of the first.
+/// The MATLAB line that saves the numbers of timeseries; the times are those of the first.
 std::string series_script(const std::vector<std::string>& names) {
   std::string script = "t = " + names.front() + ".Time; ";
   std::string saved;

@@ -45,7 +45,10 @@ std::string better_model_text(const DiagnosisReport& outcome) {
     fall +=
         (i == 0 ? "" : ", ") + steps[i].what + " " + config::units::length_words(steps[i].rms_m);
   }
-  text += comment(fall + "; noise floor " + config::units::length_words(d.noise_floor_m) + ".");
+  for (const StepWords& floor : floor_steps(d)) {
+    fall += "; " + floor.what + " " + config::units::length_words(floor.rms_m);
+  }
+  text += comment(fall + ".");
   text += comment("The plant's own parameters are fitted too.");
   std::string command = outcome.prepared->command;
   std::replace(command.begin(), command.end(), '\n', ' ');

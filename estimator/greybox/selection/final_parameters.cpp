@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/pressure_scale.h"
 #include "estimator/greybox/selection/innovation_jacobian.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/split_scatter.h"
@@ -77,6 +78,7 @@ void take_parameters(const InnovationStage& stage, Diagnosis& result) {
   FitSummary own = result.final;
   if (!stage.context.cancelled()) {
     own.jacobian = innovation_jacobian(stage, stage.context.options.threads);
+    clear_pressure_scale(stage.context.problem.model, own);  // a disturbance scales with the forces
   }
   report_parameters(stage.context, std_errors(data, data.all_mask, own), data.all_mask,
                     kObserver_per_s, result);

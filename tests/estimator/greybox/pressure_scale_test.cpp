@@ -106,7 +106,7 @@ TEST(PressureScale, IsTiedByWhatIsHeld) {
   EXPECT_EQ(pressure_scale(loaded, fitted_to(shipped("thesis.toml"))).size(), 0);
 }
 
-TEST(PressureScale, IsNotSeenByAFit) {
+TEST(PressureScale, IsRemovedFromAnyJacobian) {
   const plant_sim::ModelFile model = shipped("thesis.toml");
   FitSummary fitted = fitted_to(model);
   const Eigen::VectorXd along = pressure_scale(model, fitted);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <semaphore>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "workbench/serve/jobs.h"
@@ -12,10 +13,27 @@
 namespace workbench::serve {
 namespace {
 
+/// Work that keeps a lane busy until it is released.
+class Blocker {
+ public:
+  explicit Blocker(Lane& lane) {
+    lane.post([this] {
+      begun_ = true;
+      while (!released_) std::this_thread::yield();
+    });
+    while (!begun_) std::this_thread::yield();
+  }
+  void release() { released_ = true; }
+
+ private:
+  std::atomic<bool> begun_{false};
+  std::atomic<bool> released_{false};
+};
+
 TEST(Jobs, AnExceptionBehindAJobEndsNothing) {
   Jobs jobs;
   std::binary_semaphore ended(0);
-  const auto fails = [&](JobResult result) {
+  const auto fails = [&](const JobResult& result) {
     EXPECT_NE(result.error, "");
     ended.release();
     throw std::runtime_error("behind the job");
@@ -41,21 +59,15 @@ TEST(Lane, AnExceptionEndsItsOwnWorkAlone) {
 
 TEST(Lane, WhatIsKeptIsDoneBeforeItEndsAndTheRestIsDropped) {
   std::string done;
-  std::atomic<bool> begun{false};
-  std::atomic<bool> go{false};
   Lane lane;
-  lane.post([&] {
-    begun = true;
-    while (!go) std::this_thread::yield();
-  });
-  while (!begun) std::this_thread::yield();
+  Blocker blocker(lane);
   lane.post([&] { done += 'a'; });
   lane.post_kept([&] { done += 'b'; });
   lane.post([&] { done += 'c'; });
   lane.post_kept([&] { done += 'd'; });
   std::thread ends([&] { lane.end(); });
   while (lane.waiting() > 2) std::this_thread::yield();  // the other two are dropped
-  go = true;
+  blocker.release();
   ends.join();
   lane.post_kept([&] { done += 'e'; });
   EXPECT_EQ(done, "bd");
@@ -63,20 +75,14 @@ TEST(Lane, WhatIsKeptIsDoneBeforeItEndsAndTheRestIsDropped) {
 
 TEST(Lane, OnlyTheLatestOfWhatWaitsIsDone) {
   std::string done;
-  std::atomic<bool> begun{false};
-  std::atomic<bool> go{false};
   {
     Lane lane;
-    lane.post([&] {
-      begun = true;
-      while (!go) std::this_thread::yield();
-    });
-    while (!begun) std::this_thread::yield();
+    Blocker blocker(lane);
     for (const char name : {'a', 'b', 'c'}) {
       lane.post_latest([&done, name] { done += name; },
                        [&done, name] { done += static_cast<char>(name - 'a' + 'A'); });
     }
-    go = true;
+    blocker.release();
     std::atomic<bool> last{false};
     lane.post([&] { last = true; });
     while (!last) std::this_thread::yield();
