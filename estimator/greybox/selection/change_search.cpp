@@ -230,16 +230,18 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
 
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
 /// first one leaves.
-std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage stage) {
+FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
   const SearchContext plain = search.context;
   const ChangeSearch begun = search;
   const InnovationStage first = stage;
+  FoundChanges result;
   std::optional<ChangeSearch> best;
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
     ChangeSearch found = concluded(search, stage, taken);
     const auto cost = [](const ChangeSearch& one) { return penalised(one.innovations.final); };
     const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
+    if (!result.likeliest) result.likeliest = found;
     if (best && !(cost(found) < cost(*best) - 2.0 * enough_nats)) break;
     best = std::move(found);
   }
@@ -250,8 +252,8 @@ std::optional<ChangeSearch> changes_from(ChangeSearch search, InnovationStage st
       best = one;
     }
   }
-  if (best->innovations.physics_missing()) return {};
-  return best;
+  if (!best->innovations.physics_missing()) result.explaining = std::move(best);
+  return result;
 }
 
 }  // namespace
@@ -268,20 +270,22 @@ bool motion_explains_more(const InnovationStage& stage) {
   return false;
 }
 
-std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base,
-                                           ChangesSought sought) {
+FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
+                            ChangesSought sought) {
   if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
   ChangeSearch search{context, {}, {}};
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
   if (motion_explains_more(stage) != (sought == ChangesSought::after_laws)) return {};
   search.innovations.before = stage;
-  if (std::optional<ChangeSearch> found = changes_from(search, stage)) return found;
+  FoundChanges found = changes_from(search, stage);
+  if (found.explaining) return found;
   // a drift passes for a slow line, so that changes are sought without lines first; a strong line
   // hides a change, so that they are sought again behind lines
   add_lines(context, search.innovations, stage);
-  if (stage.noise.lines.empty()) return {};
-  return changes_from(std::move(search), std::move(stage));
+  if (stage.noise.lines.empty()) return found;
+  FoundChanges behind_lines = changes_from(std::move(search), std::move(stage));
+  return behind_lines.likeliest ? behind_lines : found;
 }
 
 }  // namespace estimator::greybox::selection

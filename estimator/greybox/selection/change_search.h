@@ -23,10 +23,14 @@ struct ChangeSearch {
 /// a change follows at best: there changes are sought after laws, elsewhere before them.
 enum class ChangesSought { before_laws, after_laws };
 
-/// None where one or two changes leave physics unexplained, or where they are sought at the other
-/// time. `base`: a fitted model, with effects or without.
-[[nodiscard]] std::optional<ChangeSearch> search_changes(
-    const SearchContext& context, const ModelStage& base,
-    ChangesSought sought = ChangesSought::before_laws);
+struct FoundChanges {
+  std::optional<ChangeSearch> explaining;  ///< one or two that leave no physics unexplained
+  std::optional<ChangeSearch> likeliest;   ///< the likeliest alone, whatever it leaves
+};
+
+/// Empty where changes are sought at the other time. `base`: a fitted model, with effects or
+/// without.
+[[nodiscard]] FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
+                                          ChangesSought sought = ChangesSought::before_laws);
 
 }  // namespace estimator::greybox::selection

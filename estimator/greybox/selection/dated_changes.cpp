@@ -6,6 +6,7 @@
 
 #include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/effects_beside_change.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -44,11 +45,15 @@ bool date_changes(const SearchContext& context, const ModelStage& first, Diagnos
   std::vector<ModelStage> bases{first};
   const ModelStage& found = result.search.final;
   if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
+  std::optional<ModelStage> beside;
   for (const ModelStage& base : bases) {
-    std::optional<ChangeSearch> search = search_changes(context, base, sought);
-    if (search && take_changes(first, *search, result, result)) return true;
+    FoundChanges changes = search_changes(context, base, sought);
+    if (changes.explaining && take_changes(first, *changes.explaining, result, result)) return true;
+    if (base.added.empty() && changes.likeliest) beside = effects_beside(first, *changes.likeliest);
   }
-  return false;
+  if (!beside) return false;
+  FoundChanges changes = search_changes(context, *beside, sought);
+  return changes.explaining && take_changes(first, *changes.explaining, result, result);
 }
 
 }  // namespace estimator::greybox::selection

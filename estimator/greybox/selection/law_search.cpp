@@ -36,32 +36,43 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site, 
   return dictionary;
 }
 
-/// False where no law is better by kRivals_nats in the place of the effect found, its parameters
-/// counted: beside it a law is never less likely than alone, and none promises half as much there.
-bool law_promises(const SearchContext& search, const InnovationSearch& named) {
+/// False where no law is better by kRivals_nats in the place of what was found: beside it a law is
+/// never less likely than alone, and none promises half as much there. The parameters of a single
+/// effect are counted; several with names are kept where a law is no likelier than they, inexact
+/// as their models are.
+bool promises(const SearchContext& search, const InnovationSearch& named) {
   InnovationStage stage = named.final;
   stage.context.problem.model = search.problem.model;
   stage.context.problem.candidate_effects = search.problem.candidate_effects;
   stage.context.problem.trial_sizes = search.problem.trial_sizes;
   const std::size_t with_effect = stage.model.fitted.parameters.size();
   const std::size_t own = with_effect - named.before.model.fitted.parameters.size();
+  const bool alone = stage.model.added.size() == 1;
   const std::vector<ScreeningResult> screened = screened_effects(stage);
   return std::any_of(screened.begin(), screened.end(), [&](const ScreeningResult& law) {
     const std::size_t count = law.parameters.size() - with_effect;
     const double saved_nats =
         own > count ? kPerParameter_nats * static_cast<double>(own - count) : 0.0;
-    return expected_nats(stage, law) > 0.5 * kRivals_nats - saved_nats;
+    const double least_nats = 0.5 * kRivals_nats + (alone ? -saved_nats : named.inexact_nats);
+    return expected_nats(stage, law) > least_nats;
   });
 }
 
 }  // namespace
+
+bool law_promises(const SearchContext& context, const std::string& site,
+                  const InnovationSearch& named) {
+  const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);
+  if (dictionary.empty() || context.cancelled()) return false;
+  return promises(with_laws(context, dictionary, {}), named);
+}
 
 bool law_competes(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {
   const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);
   if (dictionary.empty() || context.cancelled()) return false;
   const SearchContext search = with_laws(context, dictionary, {});
-  if (!law_promises(search, named)) return false;
+  if (!promises(search, named)) return false;
   TrialMemo memo;
   const std::vector<InnovationStage> others = exchanges_of(search, named, 0, memo);
   return std::any_of(others.begin(), others.end(), [&](const InnovationStage& other) {

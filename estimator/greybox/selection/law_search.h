@@ -18,6 +18,11 @@ struct LawSearch {
   std::vector<Law> laws;  ///< those among the final model's effects, in the order added
 };
 
+/// True where a law promises something beside the effects found, without which it cannot be clearly
+/// better in their place. `site` as in search_laws().
+[[nodiscard]] bool law_promises(const SearchContext& context, const std::string& site,
+                                const InnovationSearch& named);
+
 /// True where a law of the site may be clearly better than the effect in whose place it is: it
 /// explains the record about as well, or better, and promises something beside the effect. `named`
 /// has found one effect.

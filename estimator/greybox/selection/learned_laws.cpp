@@ -144,6 +144,9 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   if (!several && (site.empty() || innovations.physics_missing())) return false;
   // a search is worth it only where one law competes with the effect
   if (!several && !law_competes(context, site, innovations)) return false;
+  if (several && !innovations.physics_missing() && !law_promises(context, site, innovations)) {
+    return false;
+  }
   // one effect is compared with laws alone: which of them it would be is what is asked
   const std::optional<LawSearch> found =
       search_laws(context, first, site, several ? added : std::vector<std::string>(),

@@ -92,7 +92,8 @@ TEST(Changes, AGainThatWarmsUpIsAnExponential) {
 TEST(Changes, AnOffsetThatStepsLeavesASecondChangeToBeFound) {
   const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
                                                [](double t_s) { return t_s < 6.0 ? 0.08 : 0.12; });
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(2));
   const bool offset_first = found->changes.front().parameter == "null_bias.offset_V";
@@ -113,7 +114,8 @@ TEST(Changes, AParameterThatTheFileChangesGetsNoSecondChange) {
   // another record's change: erasing it would explain this record
   context.problem.model.changes.push_back(
       {.parameter = "gain_mps_per_V", .at_s = 5.0, .factor = 1.2});
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   if (!found) return;
   for (const ParameterChange& change : found->changes) {
     EXPECT_NE(change.parameter, "gain_mps_per_V");
@@ -125,7 +127,8 @@ TEST(Changes, ATimeSince1970IsDatedAsWell) {
   SearchContext context =
       changing_servo([](double t_s) { return t_s < 12.3456 ? 1.0 : 1.03; }, nothing);
   for (double& t_s : context.problem.data.records.front().t_s) t_s += kBegin_s;
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   const ParameterChange& change = found->changes.front();
   EXPECT_NEAR(change.at_s - kBegin_s, 12.3456, 0.005);
@@ -134,7 +137,7 @@ TEST(Changes, ATimeSince1970IsDatedAsWell) {
 
 TEST(Changes, AHealthyRecordHasNone) {
   const SearchContext context = servo_context({.rate_mps = with_offset(0.0)});
-  EXPECT_FALSE(search_changes(context, first_stage(context)).has_value());
+  EXPECT_FALSE(search_changes(context, first_stage(context)).explaining.has_value());
 }
 
 TEST(Changes, SeveralRecordsHaveNoCommonTime) {
@@ -142,14 +145,15 @@ TEST(Changes, SeveralRecordsHaveNoCommonTime) {
   std::vector<Dataset> twice{context.problem.data.records.front(),
                              context.problem.data.records.front()};
   context.problem.data = fit_dataset(twice, {});
-  EXPECT_FALSE(search_changes(context, first_stage(context)).has_value());
+  EXPECT_FALSE(search_changes(context, first_stage(context)).explaining.has_value());
 }
 
 TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=30,plant.damping_N_s_per_m=1000,"
       "at14:plant.damping_N_s_per_m=1900");
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   const ParameterChange& change = found->changes.front();
@@ -166,9 +170,9 @@ TEST(Changes, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
       "motion=chirp,length_s=30,left_out=gain_drift,left_out.size=-0.09,outside.force_N=25,"
       "outside.corner_Hz=2.5,outside.shake_m=1.1e-5,outside.shake_Hz=52.3,plant.mass_kg=52,"
       "plant.damping_N_s_per_m=940,plant.bulk_modulus_Pa=7.3e8,plant.dead_volume_m3=1.2e-5");
-  EXPECT_FALSE(search_changes(context, first_stage(context)));
+  EXPECT_FALSE(search_changes(context, first_stage(context)).explaining);
   const std::optional<ChangeSearch> found =
-      search_changes(context, first_stage(context), ChangesSought::after_laws);
+      search_changes(context, first_stage(context), ChangesSought::after_laws).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   const ParameterChange& change = found->changes.front();
@@ -188,7 +192,7 @@ TEST(Changes, AChangeThatStoodForAnotherIsDropped) {
       "plant.valve_natural_frequency_rad_per_s=653.9665836,plant.valve_damping_ratio=0.6400837709",
       616390004);
   const std::optional<ChangeSearch> found =
-      search_changes(context, first_stage(context), ChangesSought::after_laws);
+      search_changes(context, first_stage(context), ChangesSought::after_laws).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   EXPECT_EQ(found->changes.front().parameter, "valve_gain_m_per_V");
@@ -199,7 +203,8 @@ TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,plant.damping_N_s_per_m=1000,"
       "at9:plant.damping_N_s_per_m=1700,outside.shake_m=2e-5,outside.shake_Hz=43.217");
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   EXPECT_EQ(found->changes.front().parameter, "damping_N_s_per_m");
@@ -214,7 +219,8 @@ TEST(Changes, ANullThatStepsIsFoundBesideAStrongLine) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,at9:null_bias.offset_V=0.05,"
       "outside.shake_m=6e-5,outside.shake_Hz=37.411");
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   EXPECT_EQ(found->changes.front().parameter, "null_bias.offset_V");
@@ -226,7 +232,8 @@ TEST(Changes, ANullThatStepsIsFoundBesideAStrongLine) {
 TEST(Changes, ANullThatDriftsIsNoMotionThatOtherParametersFollow) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=30,left_out=null_drift,left_out.size=0.06,outside.force_N=20");
-  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
   ASSERT_TRUE(found.has_value());
   ASSERT_THAT(found->changes, SizeIs(1));
   const ParameterChange& change = found->changes.front();
