@@ -1,6 +1,7 @@
 #include "config/record/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,11 +20,24 @@ int sync_error(int file) {
   return errno;
 }
 
-/// Writes `text` and, to a regular file, until it is on the disk. Zero, or the error.
-int write_to(const std::filesystem::path& file, std::string_view text, bool special) {
+/// Gives the owner and the permissions of the file `like`, as far as the file system allows.
+void keep_access(int file, const struct stat& like) {
+  const bool owned = fchown(file, like.st_uid, like.st_gid) == 0;
+  // Without the group, what is open to it would be open to another.
+  const bool grouped = owned || fchown(file, static_cast<uid_t>(-1), like.st_gid) == 0;
+  constexpr mode_t kAccess = S_IRWXU | S_IRWXG | S_IRWXO;
+  (void)fchmod(file, like.st_mode & (grouped ? kAccess : kAccess & ~static_cast<mode_t>(S_IRWXG)));
+}
+
+/// Writes `text` and, to a regular file, until it is on the disk. `like`: the file that it
+/// replaces; null: none. Zero, or the error.
+int write_to(const std::filesystem::path& file, std::string_view text, bool special,
+             const struct stat* like) {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
-  const int out = open(file.c_str(), special ? kFlags : kFlags | O_NOFOLLOW, 0666);
+  const mode_t mode = like == nullptr ? 0666 : S_IRUSR | S_IWUSR;
+  const int out = open(file.c_str(), special ? kFlags : kFlags | O_NOFOLLOW, mode);
   if (out < 0) return errno;
+  if (like != nullptr) keep_access(out, *like);
   int error = 0;
   while (error == 0 && !text.empty()) {
     const ssize_t written = write(out, text.data(), text.size());
@@ -77,7 +91,9 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path target = behind_links(file);
   std::filesystem::path temporary = special ? file : target;
   if (!special) temporary += ".part" + std::to_string(getpid());
-  const int error = write_to(temporary, text, special);
+  struct stat before {};
+  const bool replaces = !special && stat(target.c_str(), &before) == 0 && S_ISREG(before.st_mode);
+  const int error = write_to(temporary, text, special, replaces ? &before : nullptr);
   std::error_code renamed;
   if (error == 0 && !special) std::filesystem::rename(temporary, target, renamed);
   if (error != 0 || renamed) {

@@ -70,6 +70,26 @@ TEST_F(WholeFile, IsRefusedWhereALinkLeadsNowhere) {
   EXPECT_EQ(files_in(folder_), 3U);
 }
 
+TEST_F(WholeFile, KeepsThePermissionsOfTheFileThatItReplaces) {
+  const fs::path file = folder_ / "model.toml";
+  using fs::perms;
+  const perms shared =
+      perms::owner_read | perms::owner_write | perms::group_read | perms::group_write;
+  const perms read_only = perms::owner_read | perms::group_read | perms::others_read;
+  for (const perms mode : {perms::owner_read | perms::owner_write, shared, read_only}) {
+    std::ofstream(file) << "before";
+    fs::permissions(file, mode);
+    fs::create_symlink(file, folder_ / "link.toml");
+    write_whole(file, "text");
+    EXPECT_EQ(fs::status(file).permissions(), mode);
+    write_whole(folder_ / "link.toml", "through the link");
+    EXPECT_EQ(fs::status(file).permissions(), mode);
+    EXPECT_EQ(text_of(file), "through the link");
+    fs::remove(folder_ / "link.toml");
+    fs::remove(file);
+  }
+}
+
 TEST_F(WholeFile, ADeviceBehindALinkIsWrittenTo) {
   fs::create_symlink("/dev/null", folder_ / "null");
   write_whole(folder_ / "null", "text");
