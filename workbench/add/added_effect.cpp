@@ -43,6 +43,16 @@ const ParameterInfo& parameter_named(const EffectInfo& effect, const std::string
   refuse_name(effect.name + "." + name, name, names);
 }
 
+void refuse_second_effect(const ModelFile& model, const std::string& assignment) {
+  const std::string name = plant_sim::library_name(assignment);
+  for (const EffectInfo& effect : plant_sim::effects_of(model)) {
+    if (effect.name != name) continue;
+    throw config::schema::UsageError(assignment +
+                                     ": is a second effect; allowed: parameter=number, and one "
+                                     "effect at a time, each to the file with those before");
+  }
+}
+
 ModelFile::Effect& entry_of(ModelFile& model, const EffectInfo& effect) {
   for (ModelFile::Effect& entry : model.effects) {
     if (entry.name == effect.name) return entry;
@@ -91,6 +101,7 @@ AddedEffect add_effect(const std::string& file, const std::string& effect,
   std::set<std::string> given;
   for (const std::string& assignment : assignments) {
     const std::string name = assignment.substr(0, assignment.find('='));
+    refuse_second_effect(out.model, assignment);
     if (!given.insert(name).second) throw config::schema::UsageError(name + ": is given twice");
     assign(out.model, out.effect, assignment);
   }

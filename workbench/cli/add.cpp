@@ -8,6 +8,7 @@
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/add/added_effect.h"
 #include "workbench/add/own_formula.h"
@@ -48,8 +49,13 @@ void write_added(const AddOptions& options) {
   const add::AddedEffect added = added_by(options);
   const present::PrintedAxis axis(present::motion_of(added.model));
   config::record::write_whole(options.output, plant_sim::print_model(added.model));
-  std::printf("%s: %s with %s\n", options.output.c_str(), added.model.name.c_str(),
-              added.effect.name.c_str());
+  std::vector<std::string> before;
+  for (const plant_sim::ModelFile::Effect& effect : added.model.effects) {
+    if (effect.present && effect.name != added.effect.name) before.push_back(effect.name);
+  }
+  const std::string beside = before.empty() ? "" : ", beside " + config::schema::joined(before);
+  std::printf("%s: %s with %s%s\n", options.output.c_str(), added.model.name.c_str(),
+              added.effect.name.c_str(), beside.c_str());
   for (const plant_sim::NamedValue& parameter : added.values.parameters) {
     const std::string unit = config::units::axis_unit(config::units::unit_of(parameter.name));
     std::printf("  %s = %s%s%s\n", parameter.name.c_str(),

@@ -88,6 +88,17 @@ TEST_F(AddTest, WritesOverItsOwnInputWholly) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
+TEST_F(AddTest, SaysWhichEffectsTheModelHasBeside) {
+  EXPECT_THAT(add({kModels + "thesis.toml", "null_bias", "offset_V=-0.1"}),
+              AllOf(HasSubstr("with null_bias\n"), Not(HasSubstr("beside"))));
+  add({out().string(), "friction", "coulomb_N=50"});
+  EXPECT_THAT(add({out().string(), "deadband", "half_width_V=0.1"}),
+              HasSubstr("with deadband, beside null_bias, friction\n"));
+  fs::remove(out());
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "deadband", "half_width_V=0.1", "friction"}, 2),
+              HasSubstr("friction: is a second effect; allowed: parameter=number, and one effect"));
+}
+
 TEST_F(AddTest, SaysThatAnEffectWithoutValuesHasNoInfluenceYet) {
   EXPECT_THAT(add({kModels + "velocity_servo.toml", "transport_delay"}),
               HasSubstr("no influence until"));
