@@ -1,5 +1,7 @@
 #include "config/record/clock_text.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -70,6 +72,49 @@ bool take_time_of_day(std::string_view& text, double& time_s) {
   return true;
 }
 
+/// The month that English or German begin so; 0: none.
+std::int64_t month_of(std::string_view word) {
+  constexpr std::array<std::string_view, 16> kMonths{"jan", "feb", "mar", "apr", "may", "jun",
+                                                     "jul", "aug", "sep", "oct", "nov", "dec",
+                                                     "mai", "okt", "dez", "mrz"};
+  constexpr std::array<std::int64_t, 16> kNumbers{1, 2,  3,  4,  5, 6,  7,  8,
+                                                  9, 10, 11, 12, 5, 10, 12, 3};
+  const auto found = std::find(kMonths.begin(), kMonths.end(), lower(word));
+  return found == kMonths.end() ? 0 : kNumbers[static_cast<std::size_t>(found - kMonths.begin())];
+}
+
+/// "01-May-2024", as MATLAB writes it; "01 May 2024".
+bool take_date_in_words(std::string_view& text, std::int64_t& days) {
+  constexpr std::size_t kLetters = 3;
+  std::int64_t day = 0;
+  std::int64_t year = 0;
+  std::string_view rest = text;
+  if (!take_integer(rest, 1, 2, day) || rest.size() <= kLetters + 1) return false;
+  const char mark = rest.front();
+  if (mark != '-' && mark != ' ') return false;
+  rest.remove_prefix(1);
+  const std::int64_t month = month_of(rest.substr(0, kLetters));
+  rest.remove_prefix(kLetters);
+  if (month == 0 || day < 1 || day > 31) return false;
+  if (!take_char(rest, mark) || !take_integer(rest, 4, 4, year)) return false;
+  days = days_of(year, month, day);
+  text = rest;
+  return true;
+}
+
+/// "0 days 00:00:00.005", as pandas writes a duration; the time of day stays in `text`.
+bool take_days(std::string_view& text, std::int64_t& days) {
+  std::string_view rest = text;
+  if (!take_integer(rest, 1, 5, days)) return false;
+  for (const std::string_view word : {" days ", " day "}) {
+    if (!rest.starts_with(word)) continue;
+    text = rest.substr(word.size());
+    return true;
+  }
+  days = 0;
+  return false;
+}
+
 /// "2024-05-01", "2024/05/01", "01.05.2024", "05/01/2024". Day and month of the last are the same
 /// to a record, which counts from its first sample; over a change of date they are not.
 bool take_date(std::string_view& text, std::int64_t& days) {
@@ -106,7 +151,9 @@ bool parse_clock(std::string_view field, double& time_s) {
   std::string_view text = field;
   std::int64_t days = 0;
   double seconds = 0.0;
-  if (take_date(text, days)) {
+  if (take_days(text, days)) {
+    if (!take_time_of_day(text, seconds)) return false;
+  } else if (take_date(text, days) || take_date_in_words(text, days)) {
     if (!text.empty() && (text.front() == 'T' || text.front() == ' ')) text.remove_prefix(1);
     text = trimmed(text);
     if (text.empty() || !take_time_of_day(text, seconds)) return false;

@@ -5,8 +5,8 @@
 
 namespace config::record {
 
-/// Date and time, or time of day, in s since a fixed day; `field` without blanks around. False:
-/// none.
+/// Date and time, or time of day, in s since a fixed day, or a duration "0 days 00:00:01.5";
+/// `field` without blanks around. False: none.
 [[nodiscard]] bool parse_clock(std::string_view field, double& time_s);
 
 }  // namespace config::record

@@ -89,6 +89,14 @@ TEST(Clock, CountsSecondsOfDatesAndTimes) {
   EXPECT_NEAR(b - a, 86400.0 + 0.75, 1e-6);  // 2024 has a 29th of February
   EXPECT_TRUE(parse_clock("1:02:03.5 PM", a));
   EXPECT_NEAR(a, 13 * 3600 + 2 * 60 + 3.5, 1e-9);
+  // as MATLAB's writetable and pandas write them
+  EXPECT_TRUE(parse_clock("28-Feb-2024 23:59:59.500", a));
+  EXPECT_TRUE(parse_clock("01-Mrz-2024 00:00:00,25", b));
+  EXPECT_NEAR(b - a, 86400.0 + 0.75, 1e-6);
+  EXPECT_TRUE(parse_clock("1 days 00:00:01.005000", a));
+  EXPECT_NEAR(a, 86401.005, 1e-9);
+  EXPECT_FALSE(parse_clock("28-Foo-2024 23:59:59", a));
+  EXPECT_FALSE(parse_clock("0 daze 00:00:01", a));
   EXPECT_FALSE(parse_clock("2024-13-01 00:00:00", a));
   EXPECT_FALSE(parse_clock("12.5", a));
 }

@@ -589,6 +589,27 @@ def date_and_time_apart():
             rows([["05/01/2024"] * len(T), [clock(t) for t in T], U_V, Y_MM], "\t"), truth(tolerance=1e-6))
 
 
+def matlab(t):
+    return clock(t, "01-May-2024 ")
+
+
+@style()
+def matlab_datetime():
+    return ("Time,u_cmd_V,y_mm\n" + rows([[matlab(t) for t in T], U_V, Y_MM]), truth(tolerance=1e-6))
+
+
+@style()
+def pandas_time_deltas():
+    return (",u_V,y_mm\n" + rows([[clock(t, "0 days ", begin=0.0) + "000" for t in T], U_V, Y_MM]),
+            truth(tolerance=1e-6))
+
+
+@style()
+def pandas_index_and_time_stamps():
+    t = [clock(t, "2024-05-01 ") + "000+02:00" for t in T]
+    return ",time,u_V,y_mm\n" + rows([[str(k) for k in range(len(T))], t, U_V, Y_MM]), truth(tolerance=1e-6)
+
+
 @style()
 def unix_time():
     return ("t_s,u_V,y_m\n" + rows([[1.7e9 + t for t in T], U_V, Y_M], formats=["%.3f", "%.4f", "%.6f"]),
@@ -695,6 +716,21 @@ def oscilloscope_with_a_mapping():
     return ("Model,MDO3024\nSample Interval,0.005,\nVertical Units,V,V\nLabel,,\nTIME,CH1,CH2\n" +
             rows([T, U_V, [y / 20 for y in Y_MM]]),
             truth(arguments=["--map", "t=TIME[s],u=CH1[V],y=CH2*20[mm]"], tolerance=1e-8))
+
+
+@style()
+def picoscope_with_a_mapping():
+    return ("Time,Channel A,Channel B\n(ms),(V),(mV)\n\n" +
+            rows([[1000 * t for t in T], U_V, [50 * y for y in Y_MM]]),
+            truth(arguments=["--map", "u=Channel A,y=Channel B*0.02[mm]"], tolerance=1e-8))
+
+
+@style()
+def twincat_scope_with_two_times():
+    t = [1000 * v for v in T]
+    return ("Name;Project\nFile;x.svdx\nStarttime;133589827310000000\n\n"
+            "Time;MAIN.fValveCmd [V];Time;MAIN.fActPos [mm]\n" + rows([t, U_V, t, Y_MM], ";", comma=True),
+            truth(arguments=["--map", "t=1[ms],u=MAIN.fValveCmd,y=MAIN.fActPos"]))
 
 
 @style()
