@@ -1,15 +1,13 @@
 #include "config/record/column_roles.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "config/record/column_words.h"
+#include "config/record/further_names.h"
 #include "config/record/layout.h"
 #include "config/record/map_terms.h"
 #include "config/record/probable_map.h"
@@ -27,6 +25,7 @@ class Understanding {
   Understanding(const FileHead& head, const std::vector<MapEntry>& map, bool position_optional)
       : head_(head), columns_(read_columns(head)), position_optional_(position_optional) {
     for (const MapEntry& entry : map) take(entry);
+    refuse_two_units();
   }
 
   Layout layout() {
@@ -119,10 +118,21 @@ class Understanding {
     set_channel(channel, entry, *term, stated);
   }
 
+  /// Refuses columns of which header and line of units name two units, where no entry states one.
+  void refuse_two_units() const {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const ReadColumn& column = columns_[i];
+      if (column.conflict.empty() || stated_.contains(i)) continue;
+      throw bad_data(head_.where, noun() + column.header + " names two units, " + column.conflict,
+                     one_unit_or_map(column.text.name, column.text.unit.text));
+    }
+  }
+
   void set_channel(Channel channel, const MapEntry& entry, const MapTerm& term,
                    const std::optional<UnitText>& stated) {
     const ReadColumn& column = columns_[term.column];
     const Role role = channel.role;
+    if (stated) stated_.insert(term.column);
     UnitText unit = stated ? *stated : column.text.unit;
     if (!stated && unit.text.empty() && role == Role::time && (column.clock || head_.time_in_s)) {
       unit = parse_unit("s");
@@ -233,9 +243,9 @@ class Understanding {
   }
 
   void add_further() {
-    std::set<std::string> names;
+    FurtherNames names;
     for (const Channel& channel : mapped_further_) {
-      names.insert(channel.name);
+      (void)names.take(channel.name);
       layout_.channels.push_back(channel);
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -245,42 +255,19 @@ class Understanding {
       channel.column = i;
       channel.unit_text = column.text.unit.text;
       const RecordColumn old = parse_column(column.header);
-      if (!old.si_unit.empty()) {
-        channel.name = old.si_name;
+      const bool own = old.si_unit == column.text.unit.si && old.factor == column.text.unit.factor;
+      if (!old.si_unit.empty() && own) {
+        channel.name = names.take(old.si_name);
         channel.factor = old.factor;
       } else if (column.text.unit.known()) {
-        const std::string& si = column.text.unit.si;
-        const bool reference = is_reference(column) && (si == "m" || si == "rad");
-        const std::string stem =
-            reference && !names.contains("reference_" + si) ? "reference" : slug(column.text.name);
-        channel.name = si == "1" ? stem : fmt::format("{}_{}", stem, si);
+        channel.name =
+            names.take_with_unit(column.text.name, column.text.unit.si, is_reference(column));
         channel.factor = column.text.unit.factor;
       } else {
-        const bool named = column.named;
-        channel.name = named ? slug(column.header) : "column_" + column.header;
+        channel.name = names.take(column.named ? slug(column.header) : "column_" + column.header);
       }
-      std::string unique = channel.name;
-      for (int k = 2; !names.insert(unique).second; ++k) {
-        unique = channel.name + "_" + std::to_string(k);
-      }
-      channel.name = unique;
       layout_.channels.push_back(channel);
     }
-  }
-
-  static std::string slug(const std::string& name) {
-    std::string result;
-    for (const char c : name) {
-      const auto byte = static_cast<unsigned char>(c);
-      const bool kept = byte >= 0x80 || std::isalnum(byte) != 0 || c == '.' || c == '-';
-      if (kept) {
-        result += c;
-      } else if (!result.empty() && result.back() != '_') {
-        result += '_';
-      }
-    }
-    while (result.ends_with('_')) result.pop_back();
-    return result.empty() ? "column" : result;
   }
 
   // --- the refusal
@@ -304,7 +291,9 @@ class Understanding {
     std::string what = nameless && !columns_.empty() ? "has no header that names its columns"
                                                      : schema::joined(problems_, "; ");
     what += "; " + listing(head_, columns_);
-    if (const std::string map = probable_map(columns_, known(), taken_, has_rate_); !map.empty())
+    if (const std::string map =
+            probable_map(columns_, known(), taken_, has_rate_);
+        !map.empty())
       what += (nameless ? "; for example: --map " : "; probably: --map ") + map;
     return bad_data(head_.where, what);
   }
@@ -316,6 +305,7 @@ class Understanding {
   std::array<std::optional<std::size_t>, 3> guess_;
   std::vector<Channel> mapped_further_;
   std::set<std::size_t> taken_;
+  std::set<std::size_t> stated_;  ///< of which an entry states the unit
   std::vector<std::string> problems_;
   bool has_rate_ = false;
   bool position_optional_ = false;

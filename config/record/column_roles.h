@@ -17,6 +17,7 @@ struct FileColumn {
   std::string header;  ///< as in the file; empty: the file has no header
   std::string unit;    ///< from a line of units or an attribute; empty: none
   bool numbers = true;
+  bool setting = false;        ///< its numbers with units hardly differ: perhaps no measurement
   bool clock = false;          ///< date and time, or time of day: already in s
   std::vector<double> sample;  ///< some of its first values
 };
@@ -24,10 +25,10 @@ struct FileColumn {
 struct FileHead {
   std::string where;  ///< "file:line" of the header
   std::vector<FileColumn> columns;
-  double step_s = 0.0;     ///< sampling period that the file states; 0: none
-  bool time_in_s = false;  ///< a time without a unit is in s (the format says so)
-  bool variables = false;  ///< "variable" instead of "column" in messages
-  std::string more;        ///< what else the file has, for the list of columns
+  double step_s = 0.0;         ///< sampling period that the file states; 0: none
+  bool time_in_s = false;      ///< a time without a unit is in s (the format says so)
+  bool variables = false;      ///< "variable" instead of "column" in messages
+  std::string more;            ///< what else the file has, for the list of columns
 };
 
 enum class Role { time, command, position, further };

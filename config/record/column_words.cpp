@@ -1,14 +1,14 @@
 #include "config/record/column_words.h"
 
+#include <algorithm>
 #include <cctype>
 #include <utility>
 
-#include "config/schema/error.h"
+#include "config/record/unit_cells.h"
 
 namespace config::record {
 namespace {
 
-using schema::bad_data;
 using Words = std::vector<std::string_view>;
 
 /// "Valve cmdVoltage_1" as "valve", "cmd", "voltage", "1".
@@ -69,6 +69,7 @@ const Words kOtherWords{"error*", "err",      "fehler*",   "deviation", "abweich
                         "sim*",   "estimat*", "observer*", "offset",    "status",    "tank"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
+const Words kPressureWords{"pressure*", "press", "druck*"};
 /// Of the valve, whose position is not the rod's and whose reading is no command.
 const Words kSpoolWords{"spool*", "schieber*"};
 
@@ -86,23 +87,43 @@ bool is_canonical(Role role, const ReadColumn& column) {
 
 }  // namespace
 
+HeaderText column_header(const std::vector<std::string>& headers, std::size_t column,
+                         const UnitText& beside) {
+  const std::string header = clean_text(headers[column]);
+  HeaderText text = parse_header(header);
+  const std::string& letter = text.unit.text;
+  const bool may = letter == "A" || letter == "V" || letter == "N";
+  const bool own = std::find(kRoleKeys.begin(), kRoleKeys.end(), text.name) != kRoleKeys.end();
+  if (!may || own || header != text.name + "_" + letter) return text;
+  const auto has = [&](const char* other) {
+    return std::any_of(headers.begin(), headers.end(), [&](const std::string& each) {
+      return clean_text(each) == text.name + "_" + other;
+    });
+  };
+  const std::vector<std::string> words = words_of(text.name);
+  const bool pressure = has_word(words, kPressureWords) || (!words.empty() && words.back() == "p");
+  const bool counted = letter == "A" ? has("B") : letter == "V" && (has("U") || has("W"));
+  const bool other = beside.known() && beside.si != "1" && beside.si != text.unit.si;
+  return pressure || counted || other ? HeaderText{header, {}} : text;
+}
+
 std::vector<ReadColumn> read_columns(const FileHead& head) {
+  std::vector<std::string> headers;
+  headers.reserve(head.columns.size());
+  for (const FileColumn& column : head.columns) headers.push_back(column.header);
   std::vector<ReadColumn> columns;
   for (std::size_t i = 0; i < head.columns.size(); ++i) {
     const FileColumn& column = head.columns[i];
     ReadColumn read;
     read.header = column.header.empty() ? std::to_string(i + 1) : column.header;
-    if (!column.header.empty()) read.text = parse_header(column.header);
+    const UnitText unit = parse_unit(column.unit);
+    if (!column.header.empty()) read.text = column_header(headers, i, unit);
     if (!column.unit.empty()) {
       // With a line of units the whole header is the name, unless both name the same unit.
-      const UnitText unit = parse_unit(column.unit);
-      if (unit.si != read.text.unit.si || unit.factor != read.text.unit.factor) {
-        if (!read.text.unit.text.empty() && read.text.unit.known() && unit.known() &&
-            unit.si != "1") {
-          throw bad_data(head.where, "column " + read.header + " names two units, " +
-                                         read.text.unit.text + " and " + unit.text);
-        }
-        if (unit.si != "1" || !read.text.unit.known()) {
+      if (!same_unit(unit, read.text.unit)) {
+        if (read.text.unit.known() && unit.known() && unit.si != "1") {
+          read.conflict = read.text.unit.text + " and " + unit.text;
+        } else if (unit.si != "1" || !read.text.unit.known()) {
           if (!read.text.unit.known()) read.text.name = column.header;
           read.text.unit = unit;
         }
@@ -116,6 +137,7 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
     read.named = !column.header.empty();
     read.numbers = column.numbers;
     read.clock = column.clock;
+    read.setting = column.setting;
     read.sample = &column.sample;
     columns.push_back(std::move(read));
   }
@@ -150,13 +172,17 @@ bool has_stem_of(Role role, const ReadColumn& column) {
   return stem == kRoleKeys[index_of(role)] || (role == Role::time && stem == "time");
 }
 
+bool names_reference(std::string_view name) { return has_word(words_of(name), kReferenceWords); }
+
 bool is_reference(const ReadColumn& column) { return has_word(column.words, kReferenceWords); }
 
 bool is_plain(const ReadColumn& column) {
   return !is_reference(column) && !has_word(column.words, kOtherWords);
 }
 
-int score(Role role, const ReadColumn& column) {
+namespace {
+
+int fit_of(Role role, const ReadColumn& column) {
   if (is_canonical(role, column)) return kCanonical;
   if (!column.numbers && !column.clock) return 0;
   const UnitText& unit = column.text.unit;
@@ -187,6 +213,14 @@ int score(Role role, const ReadColumn& column) {
   if (has_word(column.words, kCommandWords)) return 0;  // a commanded position is a reference
   if (has_word(column.words, kPositionWords)) return kStrong + measured;
   return has_word(column.words, kWeakPositionWords) ? kWeak + measured : 0;
+}
+
+}  // namespace
+
+int score(Role role, const ReadColumn& column) {
+  constexpr int kLessForSetting = 15;
+  const int points = fit_of(role, column);
+  return points > 0 && column.setting ? points - kLessForSetting : points;
 }
 
 }  // namespace config::record

@@ -23,15 +23,21 @@ inline constexpr std::array<const char*, 3> kRoleKeys{"t", "u", "y"};
 struct ReadColumn {
   std::string header;  ///< for messages: as in the file, or its number
   HeaderText text;
+  std::string conflict;  ///< the two units that header and line of units name; empty: one or none
   std::vector<std::string> words;
   bool named = false;  ///< the file names it
   bool numbers = true;
   bool clock = false;
+  bool setting = false;
   const std::vector<double>* sample = nullptr;
 };
 
-/// Refers to `head`. Throws schema::DataError for a column of which header and line of units name
-/// two units.
+/// Name and unit in a column's header. The letter of a port or a phase is no unit: p_A, i_V beside
+/// i_U, and any where another quantity's unit stands `beside` the name. `headers`: all columns'.
+[[nodiscard]] HeaderText column_header(const std::vector<std::string>& headers, std::size_t column,
+                                       const UnitText& beside);
+
+/// Refers to `head`.
 [[nodiscard]] std::vector<ReadColumn> read_columns(const FileHead& head);
 
 [[nodiscard]] bool increases(const std::vector<double>& values);
@@ -41,13 +47,15 @@ struct ReadColumn {
 
 /// True for "t", "u" and "y", the role's own name.
 [[nodiscard]] bool has_stem_of(Role role, const ReadColumn& column);
-/// True for a set point.
+/// True for the name of a set point.
+[[nodiscard]] bool names_reference(std::string_view name);
+/// Likewise.
 [[nodiscard]] bool is_reference(const ReadColumn& column);
 /// True where no word speaks of a set point or another quantity.
 [[nodiscard]] bool is_plain(const ReadColumn& column);
 
 /// How well a column's words and unit fit a role: 100 for t_s, u_A, y_rad and their like; 0: not at
-/// all.
+/// all. A setting fits less than any measurement of the same words.
 [[nodiscard]] int score(Role role, const ReadColumn& column);
 
 }  // namespace config::record

@@ -31,6 +31,7 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
     column.numbers = form.kinds[i] == FieldKind::number ||
                      (form.kinds[i] == FieldKind::missing && !column.header.empty());
     column.clock = form.kinds[i] == FieldKind::clock;
+    column.setting = form.cell_units[i].doubtful();
     column.sample = form.head[i];
     std::erase_if(column.sample, [](double value) { return std::isnan(value); });
     head.columns.push_back(std::move(column));
@@ -162,12 +163,23 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
   };
   for (const Channel& channel : layout.channels) {
     wanted(channel.column);
+    const bool setting =
+        channel.role == Role::further && form.cell_units[channel.column].doubtful();
+    if (setting) actions[channel.column] = RowReader::Action::setting;
     if (channel.times != Channel::kSharedTimes) wanted(channel.times);
   }
   RowReader rows(window, name, form, actions);
   FileValues values;
   values.name = name;
   values.values = rows.read();
+  std::string settings;
+  std::erase_if(layout.channels, [&](const Channel& channel) {
+    const std::size_t line = rows.left_out_at(channel.column);
+    if (line == 0) return false;
+    settings += (settings.empty() ? "" : ", ") + rows.column_name(channel.column) + " (line " +
+                std::to_string(line) + ")";
+    return true;
+  });
   values.place = [&](std::size_t row) { return name + ":" + std::to_string(rows.line_of(row)); };
   values.header = [&](std::size_t column) { return rows.column_name(column); };
   begin_clocks_together(form, values.values);
@@ -179,6 +191,7 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
     words += (words.empty() ? "" : ", ") + rows.column_name(i);
   }
   if (!words.empty()) record.notes.push_back("left out, no numbers: " + words);
+  if (!settings.empty()) record.notes.push_back("left out, not all numbers: " + settings);
   if (!form.passed.empty()) {
     record.notes.push_back("left out, neither names nor a row: " + lines_in(form.passed));
   }

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "config/record/column_roles.h"
+#include "config/record/column_words.h"
+#include "config/record/further_names.h"
 #include "config/record/unit_cells.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
@@ -79,28 +81,48 @@ void refuse_clash(const std::vector<RecordColumn>& columns, const std::vector<st
   }
 }
 
+struct PlainColumn {
+  RecordColumn column;
+  std::string unit_text;       ///< as in the file
+  bool named_by_unit = false;  ///< the unit is none of its name's own endings
+};
+
+/// True where a header's unit stands apart ("p [bar]", "p / bar", "p_bar_"), not in an ending that
+/// is part of the name ("i_mA").
+bool stands_apart(const std::string& header, const HeaderText& text) {
+  if (!text.unit.known() || text.unit.si == "1") return false;
+  const std::string whole = clean_text(header);
+  return whole.ends_with('_') || whole[text.name.size()] != '_';
+}
+
 /// The column of that name and of a unit beside the name, which a name without one takes on.
-RecordColumn column_of(const std::string& name, const std::string& unit_beside,
-                       const std::string& where) {
-  RecordColumn column = parse_column(name);
-  const UnitText unit = parse_unit(unit_beside);
-  if (!unit.known() || unit.si == "1") return column;
+PlainColumn column_of(const std::string& name, const std::string& unit_beside,
+                      const std::string& where) {
+  const RecordColumn own = parse_column(name);
+  UnitText unit = parse_unit(unit_beside);
+  if (unit.si == "1") unit = {};
   HeaderText named = parse_header(name);
-  if (!column.si_unit.empty()) {
-    named = {column.stem, {name.substr(column.stem.size() + 1), column.si_unit, column.factor}};
+  const bool apart = own.si_unit.empty() && stands_apart(name, named);
+  if (!own.si_unit.empty()) {
+    named = {own.stem, {name.substr(own.stem.size() + 1), own.si_unit, own.factor}};
+  }
+  const auto with = [](const std::string& stem, const UnitText& of) {
+    return PlainColumn{{stem, of.si, stem + "_" + of.si, of.factor}, of.text, true};
+  };
+  if (!unit.known()) {
+    if (apart) return with(named.name, named.unit);
+    return {own, own.si_unit.empty() ? "" : named.unit.text, false};
   }
   if (named.unit.known() && !same_unit(named.unit, unit)) {
     // "p_A" of another dimension is a port: what stands beside the name says more
-    const bool further = main_of(column) == nullptr && !is_time(column);
-    if (further && named.unit.si != unit.si) {
-      return {name, unit.si, name + "_" + unit.si, unit.factor};
-    }
+    const bool further = main_of(own) == nullptr && !is_time(own);
+    if (further && !apart && named.unit.si != unit.si) return with(name, unit);
     throw bad_data(where,
-                   "column " + name + " names two units, " + named.unit.text + " and " + unit.text);
+                   "column " + name + " names two units, " + named.unit.text + " and " + unit.text,
+                   one_unit_or_map(name, unit.text));
   }
-  if (!column.si_unit.empty()) return column;
-  const std::string stem = named.unit.known() ? named.name : name;
-  return {stem, unit.si, stem + "_" + unit.si, unit.factor};
+  if (!own.si_unit.empty()) return {own, named.unit.text, false};
+  return with(named.unit.known() ? named.name : name, unit);
 }
 
 }  // namespace
@@ -122,20 +144,26 @@ std::optional<Layout> plain_layout(const std::vector<std::string>& names,
     });
     if (!there) return std::nullopt;
   }
+  std::vector<PlainColumn> plain(columns.size());
+  FurtherNames given;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (names[i].empty()) continue;
+    plain[i] = column_of(names[i], units[i], where);
+    columns[i] = plain[i].column;
+    refuse_clash(columns, names, i, where);
+    if (!plain[i].named_by_unit) (void)given.take(columns[i].si_name);
+  }
   Layout layout;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (names[i].empty()) continue;
-    const bool named_unit = !columns[i].si_unit.empty();
-    columns[i] = column_of(names[i], units[i], where);
-    refuse_clash(columns, names, i, where);
     const RecordColumn& column = columns[i];
     Channel channel;
     channel.column = i;
-    channel.name = column.si_name;
+    channel.name = plain[i].named_by_unit ? given.take_with_unit(column.stem, column.si_unit,
+                                                                 names_reference(column.stem))
+                                          : column.si_name;
     channel.factor = column.factor;
-    if (!column.si_unit.empty()) {
-      channel.unit_text = named_unit ? names[i].substr(column.stem.size() + 1) : units[i];
-    }
+    channel.unit_text = plain[i].unit_text;
     if (const MainColumn* main = main_of(column); main != nullptr) {
       if (column.si_unit != main->si_unit) {
         throw bad_data(where,

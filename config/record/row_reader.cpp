@@ -44,6 +44,7 @@ RowReader::RowReader(TextWindow& window, const std::string& name, const TextForm
       line_(form.data_line),
       ends_with_newline_(window.ends_with_newline()) {
   values_.resize(actions_.size());
+  left_out_at_.resize(actions_.size());
   for (std::size_t i = 0; i < actions_.size(); ++i) {
     const bool points = form.decimals[i].decimal == '.' && !form.cell_units[i].any();
     has_points_.push_back(actions_[i] == Action::number && points ? 1 : 0);
@@ -222,8 +223,9 @@ inline bool RowReader::read_field(std::size_t column) {
     at_ = field_begin_;
   }
   const std::string_view text = take_field();
-  values_[column].push_back(action == Action::clock ? clock_in(text, column)
-                                                    : number_in(text, column));
+  values_[column].push_back(action == Action::clock     ? clock_in(text, column)
+                            : action == Action::setting ? setting_in(text, column)
+                                                        : number_in(text, column));
   return next_field();
 }
 
@@ -270,6 +272,16 @@ inline double RowReader::number_in(std::string_view text, std::size_t column) {
                    "finite numbers");
   }
   return value;
+}
+
+double RowReader::setting_in(std::string_view text, std::size_t column) {
+  try {
+    return number_in(text, column);
+  } catch (const schema::DataError&) {
+    left_out_at_[column] = line_;
+    actions_[column] = Action::skip;
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 schema::DataError RowReader::no_number(std::string_view text, std::size_t column) const {

@@ -20,7 +20,12 @@ namespace config::record {
 /// The rows of a text file, read once from front to back.
 class RowReader {
  public:
-  enum class Action { skip, number, clock };
+  enum class Action {
+    skip,
+    number,
+    clock,
+    setting  ///< numbers, up to the first cell that is none: the column is left out then
+  };
 
   /// `window` begins with the text.
   RowReader(TextWindow& window, const std::string& name, const TextForm& form,
@@ -34,6 +39,9 @@ class RowReader {
   [[nodiscard]] std::size_t line_of(std::size_t row) const;
 
   [[nodiscard]] std::string column_name(std::size_t i) const;
+
+  /// Line of the first cell of a setting that is no number; 0: there is none.
+  [[nodiscard]] std::size_t left_out_at(std::size_t i) const { return left_out_at_[i]; }
 
  private:
   void reserve();
@@ -69,6 +77,8 @@ class RowReader {
   /// The text up to the field's end, blanks and quotes removed.
   std::string_view take_field();
 
+  double setting_in(std::string_view text, std::size_t column);
+
   double number_in(std::string_view text, std::size_t column);
 
   /// The refusal of what stands for a number in `text`.
@@ -89,6 +99,7 @@ class RowReader {
   std::size_t line_;
   std::size_t rows_ = 0;
   std::vector<std::vector<double>> values_;
+  std::vector<std::size_t> left_out_at_;
   std::vector<std::pair<std::size_t, std::size_t>> passed_;  ///< row, comments before it
   std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
   double before_s_ = -std::numeric_limits<double>::infinity();

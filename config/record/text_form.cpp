@@ -5,10 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "config/record/column_words.h"
 #include "config/record/damaged_row.h"
 #include "config/record/layout.h"
 #include "config/record/limit_line.h"
+#include "config/record/own_form.h"
 #include "config/record/text_fields.h"
+#include "config/record/unit_line.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
@@ -36,7 +39,7 @@ class FormFinder {
         text_.find_first_not_of(" \t\r\n") == std::string_view::npos) {
       throw bad_data(name_, "is empty", "CSV with a header t_s,u_V,y_m");
     }
-    if (plain_header()) return form_;
+    if (std::optional<TextForm> own = own_form(text_, lines_)) return *std::move(own);
     const TextTable table = find_table(lines_, name_);
     form_.dialect = table.dialect;
     form_.kinds = table.kinds;
@@ -48,78 +51,14 @@ class FormFinder {
     first_ = table.first;
     name_columns();
     read_preamble();
-    for (std::size_t c = 0; c < form_.kinds.size(); ++c) require_one_unit(c);
+    for (std::size_t c = 0; c < form_.kinds.size(); ++c) {
+      if (!names_unit(c)) form_.cell_units[c].take_unit_of_gaps();
+      require_one_unit(c);
+    }
     return form_;
   }
 
  private:
-  // --- the project's own files: the first line has time, command and position by their names
-
-  bool plain_header() {
-    std::size_t first = 0;
-    while (first < lines_.size() && trimmed(lines_[first].text).empty()) ++first;
-    if (first == lines_.size() || first > 0) return false;
-    const std::vector<std::string> names = split_fields(lines_[0].text, ',');
-    bool time = false;
-    bool command = false;
-    bool position = false;
-    for (const std::string& name : names) {
-      const RecordColumn column = parse_column(name);
-      time = time || (is_time(column) && column.si_unit == "s");
-      command = command || (column.stem == "u" && column.si_unit == "V");
-      position = position || (column.stem == "y" && column.si_unit == "m");
-    }
-    if (!time || !command || !position || has_quoted_comma() || has_unit_cells()) return false;
-    form_.header_line = 1;
-    form_.names = names;
-    form_.kinds.assign(names.size(), FieldKind::number);
-    form_.head.resize(names.size());
-    form_.decimals.resize(names.size());
-    form_.cell_units.resize(names.size());
-    form_.data_line = 2;
-    form_.data_offset = lines_.size() > 1 ? lines_[1].offset : text_.size();
-    // A column of words beside the three is left out, as in any other file.
-    if (lines_.size() > 1) {
-      const std::vector<std::string> fields = split_fields(lines_[1].text, ',');
-      for (std::size_t i = 0; i < std::min(fields.size(), names.size()); ++i) {
-        double value = 0.0;
-        const bool word = kind_of(fields[i], '.', value) == FieldKind::text &&
-                          std::none_of(fields[i].begin(), fields[i].end(), is_digit);
-        if (word && !is_main(parse_column(names[i]))) form_.kinds[i] = FieldKind::text;
-      }
-    }
-    return true;
-  }
-
-  /// A number such as "1,25" or "1,234.5" below the first line.
-  [[nodiscard]] bool has_quoted_comma() const {
-    for (std::size_t i = 1; i < lines_.size(); ++i) {
-      if (lines_[i].text.find('"') == std::string_view::npos) continue;
-      for (const std::string& field : split_fields(lines_[i].text, ',')) {
-        double value = 0.0;
-        if (field.find(',') != std::string::npos &&
-            (parse_number(field, '.', value) || parse_number(field, ',', value))) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  /// A number with a unit behind it below the first line.
-  [[nodiscard]] bool has_unit_cells() const {
-    for (std::size_t i = 1; i < lines_.size(); ++i) {
-      const std::string_view line = lines_[i].text;
-      if (line.find_first_not_of("0123456789+-.,eE\" \t") == std::string_view::npos) continue;
-      const std::vector<std::string> fields = split_fields(line, ',');
-      if (std::any_of(fields.begin(), fields.end(),
-                      [](const std::string& field) { return unit_cell(field).has_value(); })) {
-        return true;
-      }
-    }
-    return false;
-  }
-
   // --- names and units above the first row
 
   static std::string_view without_comment_mark(std::string_view line) {
@@ -149,22 +88,6 @@ class FormFinder {
              std::count(last.begin(), last.end(), ']') + std::count(last.begin(), last.end(), ')');
     }
     return joined;
-  }
-
-  static bool is_unit_row(const std::vector<std::string>& fields) {
-    std::size_t known = 0;
-    for (const std::string& field : fields) {
-      if (field.empty() || field == "-" || field == "[]" || field == "[-]" || field == "()")
-        continue;
-      const UnitText unit = parse_unit(field);
-      if (!unit.known()) {
-        const bool bracketed = field.front() == '[' || field.front() == '(';
-        if (!bracketed) return false;
-        continue;
-      }
-      ++known;
-    }
-    return known > 0;
   }
 
   /// Names of `line`, cut or filled to the number of columns; false: they are of another number.
@@ -236,7 +159,7 @@ class FormFinder {
         break;
       }
       const bool limits = is_limit_line(names, form_.dialect.decimal);
-      above.push_back({i, names, is_unit_row(names), limits, commented});
+      above.push_back({i, names, is_unit_line(names), limits, commented});
     }
     return above;
   }
@@ -287,12 +210,15 @@ class FormFinder {
     form_.header_line = header->line + 1;
   }
 
+  [[nodiscard]] RowsBelow rows_below(bool named) const {
+    return {form_.dialect.decimal, form_.kinds, form_.head, named};
+  }
+
   /// Refuses a line above the table that damaged fields keep from being a row. `header`: another
   /// line, which has the names; null: there is none.
   void require_no_row(std::size_t line, const std::vector<std::string>& fields,
                       const Candidate* header) const {
-    const RowsBelow rows{form_.dialect.decimal, form_.kinds, form_.head, header != nullptr};
-    const std::optional<std::size_t> damaged = damaged_field(fields, rows);
+    const std::optional<std::size_t> damaged = damaged_field(fields, rows_below(header != nullptr));
     if (!damaged) return;
     const bool named = header != nullptr && !header->names[*damaged].empty();
     refuse_field(line, fields[*damaged], *damaged,
@@ -309,7 +235,7 @@ class FormFinder {
 
   /// Refuses a line of names amid rows: a row of which every field is damaged.
   void require_no_rows_above(const Candidate& header, const std::vector<Candidate>& above) const {
-    const RowsBelow rows{form_.dialect.decimal, form_.kinds, form_.head};
+    const RowsBelow rows = rows_below(false);
     for (std::size_t i = 1; i < above.size(); ++i) {
       if (above[i - 1].line >= header.line) continue;
       if (!are_rows(above[i].names, above[i - 1].names, rows)) continue;
@@ -328,6 +254,11 @@ class FormFinder {
     return "column " + (named ? form_.names[c] : std::to_string(c + 1));
   }
 
+  [[nodiscard]] bool names_unit(std::size_t c) const {
+    if (!form_.units.empty() && parse_unit(form_.units[c]).known()) return true;
+    return !form_.names.empty() && column_header(form_.names, c, {}).unit.known();
+  }
+
   /// Refuses cells of one column with two units, or with another than the header's.
   void require_one_unit(std::size_t c) const {
     const CellUnits& cells = form_.cell_units[c];
@@ -337,7 +268,7 @@ class FormFinder {
     };
     if (cells.odd_line() > 0) refuse(cells.odd_line(), cells.conflict(cells.odd()));
     UnitText above;
-    if (!form_.names.empty()) above = parse_header(form_.names[c]).unit;
+    if (!form_.names.empty()) above = column_header(form_.names, c, cells.unit()).unit;
     if (!above.known() && !form_.units.empty()) above = parse_unit(form_.units[c]);
     if (above.text.empty() || above.si == "1" || same_unit(above, cells.unit())) return;
     refuse(cells.line(), record::quoted(cells.first()) + " is in " + cells.unit().text +

@@ -136,28 +136,35 @@ bool goes_on(FieldKind column, const CellUnits& cells, FieldKind kind, bool has_
   return column == kind;
 }
 
-/// True where the first rows show a setting or a name ("24V", "1A" and "2A"), not a measurement:
-/// hardly two values, and never zero.
-bool is_label(const std::vector<double>& head) {
+/// True where the first rows may show a setting or a name ("24V", "1A" and "2A"), not a
+/// measurement: hardly two values, and never zero. `most`: as many values.
+bool has_few_values(const std::vector<double>& head, std::size_t most) {
   constexpr std::size_t kFewestRows = 8;
-  constexpr std::size_t kMostLabels = 2;
   if (head.size() < kFewestRows) return false;
   std::set<double> values;
   for (const double value : head) {
     if (value == 0.0) return false;
     if (!std::isnan(value)) values.insert(value);
-    if (values.size() > kMostLabels) return false;
+    if (values.size() > most) return false;
   }
   return true;
 }
 
-/// Columns whose cells are numbers with units become columns of numbers.
+/// Columns whose cells are numbers with units become columns of numbers. Names do not; settings
+/// are in doubt.
 void take_units(TextTable& table) {
+  constexpr std::size_t kMostSettings = 2;
   for (std::size_t c = 0; c < table.columns; ++c) {
-    if (table.kinds[c] == FieldKind::text && is_label(table.head[c])) table.cell_units[c] = {};
-    if (table.kinds[c] == FieldKind::text && table.cell_units[c].any()) {
-      table.kinds[c] = FieldKind::number;
+    CellUnits& cells = table.cell_units[c];
+    if (table.kinds[c] == FieldKind::text && has_few_values(table.head[c], kMostSettings)) {
+      const bool setting = has_few_values(table.head[c], 1);
+      if (cells.words() || (cells.glued() && !setting)) {
+        cells = {};
+      } else {
+        cells.doubt();
+      }
     }
+    if (table.kinds[c] == FieldKind::text && cells.any()) table.kinds[c] = FieldKind::number;
     if (table.kinds[c] != FieldKind::text) continue;
     std::fill(table.head[c].begin(), table.head[c].end(), std::nan(""));
   }
@@ -219,6 +226,8 @@ TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialec
         now.cell_units[c].take_number(fields.fields[c], fields.units[c], i + 1);
       } else if (kind == FieldKind::text) {
         now.cell_units[c].take_word(fields.fields[c], i + 1);
+      } else if (const auto unit = missing_cell_unit(fields.fields[c])) {
+        now.cell_units[c].take_missing(*unit);
       }
       if (now.head[c].size() < kHeadRows) now.head[c].push_back(fields.values[c]);
     }

@@ -1,5 +1,7 @@
 #include "config/record/unit_cells.h"
 
+#include <algorithm>
+
 #include "config/record/layout.h"
 #include "config/record/text_fields.h"
 
@@ -44,9 +46,9 @@ std::optional<UnitCell> unit_cell(std::string_view field) {
   return std::nullopt;
 }
 
-bool is_missing_cell(std::string_view field) {
+std::optional<UnitText> missing_cell_unit(std::string_view field) {
   constexpr std::size_t kLongest = 32;
-  if (field.size() > kLongest || is_digit(field.empty() ? '0' : field.front())) return false;
+  if (field.size() > kLongest || is_digit(field.empty() ? '0' : field.front())) return {};
   for (std::size_t end = 1; end < field.size(); ++end) {
     const std::string_view word = trimmed(field.substr(0, end));
     if (!is_missing(word)) continue;
@@ -56,11 +58,13 @@ bool is_missing_cell(std::string_view field) {
     if (!blank && !is_blank(field[end - 1]) && !text.ends_with("nan") && !text.ends_with("--")) {
       continue;
     }
-    const UnitText unit = parse_unit(unit_text_of(field.substr(end)));
-    if (unit.known() && unit.si != "1") return true;
+    UnitText unit = parse_unit(unit_text_of(field.substr(end)));
+    if (unit.known() && unit.si != "1") return unit;
   }
-  return false;
+  return {};
 }
+
+bool is_missing_cell(std::string_view field) { return missing_cell_unit(field).has_value(); }
 
 std::string_view without_unit(std::string_view field) {
   const std::optional<UnitCell> cell = unit_cell(field);
@@ -75,6 +79,8 @@ void CellUnits::take_number(std::string_view field, const std::optional<UnitCell
                             std::size_t line) {
   const UnitText unit = cell ? cell->unit : UnitText{};
   with_unit_ += cell ? 1 : 0;
+  glued_ = glued_ && (!cell || (std::all_of(cell->number.begin(), cell->number.end(), is_digit) &&
+                                unit.text == cell->suffix));
   if (first_.empty()) {
     first_ = std::string(field);
     line_ = line;
@@ -89,6 +95,17 @@ void CellUnits::take_word(std::string_view field, std::size_t line) {
   ++words_;
   names_ = names_ || begins_as_number(field);
   note_odd(field, line);
+}
+
+void CellUnits::take_missing(const UnitText& unit) {
+  if (!gaps_.known()) gaps_ = unit;
+}
+
+void CellUnits::take_unit_of_gaps() {
+  if (!gaps_.known() || !first_.empty()) return;
+  unit_ = gaps_;
+  suffix_ = " " + gaps_.text;
+  with_unit_ = words_ + 1;
 }
 
 void CellUnits::note_odd(std::string_view field, std::size_t line) {

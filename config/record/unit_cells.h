@@ -24,7 +24,8 @@ struct UnitCell {
 /// None where `field` does not begin as a number or does not end in a known unit.
 [[nodiscard]] std::optional<UnitCell> unit_cell(std::string_view field);
 
-/// "NaN mm", "-- mm": a gap in a column whose cells carry their unit.
+/// The unit of "NaN mm", "-- mm": a gap in a column whose cells carry their unit.
+[[nodiscard]] std::optional<UnitText> missing_cell_unit(std::string_view field);
 [[nodiscard]] bool is_missing_cell(std::string_view field);
 
 /// "3.2" of "3.2 mm", all of any other text.
@@ -39,6 +40,19 @@ class CellUnits {
   void take_number(std::string_view field, const std::optional<UnitCell>& cell, std::size_t line);
   /// A word that begins as a number is a name: "1A", "1B".
   void take_word(std::string_view field, std::size_t line);
+
+  /// A gap with a unit.
+  void take_missing(const UnitText& unit);
+
+  /// Makes the unit of the gaps that of the column where no cell has a number.
+  void take_unit_of_gaps();
+
+  /// The numbers may be a setting: the column is no matter of refusing the file.
+  void doubt() { doubtful_ = true; }
+  [[nodiscard]] bool doubtful() const { return doubtful_; }
+
+  /// Whole numbers with the unit right behind: "24V", "1A".
+  [[nodiscard]] bool glued() const { return glued_ && with_unit_ > 0; }
 
   /// The column is one of numbers with units, whole or with a cell that has to be refused.
   [[nodiscard]] bool any() const { return !names_ && with_unit_ > words_; }
@@ -62,6 +76,9 @@ class CellUnits {
   void note_odd(std::string_view field, std::size_t line);
 
   bool names_ = false;
+  bool glued_ = true;
+  bool doubtful_ = false;
+  UnitText gaps_;  ///< the unit of the first gap that has one
   std::size_t words_ = 0;
   std::size_t with_unit_ = 0;
   std::string first_;  ///< first cell with a number; empty: none so far

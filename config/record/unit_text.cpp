@@ -219,6 +219,10 @@ HeaderText parse_header(std::string_view text) {
   return {std::string(whole), {}};
 }
 
+std::string one_unit_or_map(const std::string& column, const std::string& unit) {
+  return "one unit, or the right one in --map: 'KEY=" + column + "[" + unit + "]'";
+}
+
 std::string folded(std::string_view name) {
   std::string result;
   for (const char c : name) {

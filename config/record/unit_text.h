@@ -33,6 +33,9 @@ struct HeaderText {
 /// "Position mm", "position_mm", "Position_mm_" (as MATLAB renames "Position (mm)").
 [[nodiscard]] HeaderText parse_header(std::string_view header);
 
+/// What is allowed where two units are named for a column, for messages.
+[[nodiscard]] std::string one_unit_or_map(const std::string& column, const std::string& unit);
+
 /// Names alike but for case, blanks and punctuation are equal: "Valve cmd" and "valve_cmd".
 [[nodiscard]] std::string folded(std::string_view name);
 

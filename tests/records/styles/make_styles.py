@@ -79,6 +79,31 @@ def bad_own_with_another_unit_below():
     return "t_s;u_V;y_m\ns;mV;m\n" + rows([T, U_V, Y_M], ";"), refused("column u_V names two units, V and mV")
 
 
+@style()
+def own_beside_headers_in_words():
+    header = "t_s,u_V,y_m,Supply pressure [bar],p_A [bar],Setpoint [mm]\n"
+    return (header + rows([T, U_V, Y_M, [70.0] * len(T), [50.0] * len(T), Y_MM]),
+            truth(further={"Supply_pressure_Pa": [70e5] * len(T), "p_A_Pa": [50e5] * len(T), "reference_m": Y_M}))
+
+
+@style()
+def own_with_a_unit_for_a_further_column_alone():
+    return ("t_s,u_V,y_m,supply\n,,,bar\n" + rows([T, U_V, Y_M, [70.0] * len(T)]),
+            truth(further={"supply_Pa": [70e5] * len(T)}))
+
+
+@style()
+def own_with_a_setting_in_the_cells():
+    return ("t_s,u_V,y_m,supply\n" + rows([T, U_V, Y_M, ["70 bar"] * len(T)]),
+            truth(further={"supply_Pa": [70e5] * len(T)}))
+
+
+@style()
+def bad_own_with_another_unit_below_between_commas():
+    return ("t_s,u_V,y_m\ns,mV,m\n" + rows([T, U_V, Y_M]),
+            refused(":1: column u_V names two units, V and mV", "--map"))
+
+
 # --- spreadsheets --------------------------------------------------------------------------------
 
 @style()
@@ -731,6 +756,13 @@ def twincat_scope_with_two_times():
     return ("Name;Project\nFile;x.svdx\nStarttime;133589827310000000\n\n"
             "Time;MAIN.fValveCmd [V];Time;MAIN.fActPos [mm]\n" + rows([t, U_V, t, Y_MM], ";", comma=True),
             truth(arguments=["--map", "t=1[ms],u=MAIN.fValveCmd,y=MAIN.fActPos"]))
+
+
+@style()
+def ports_in_a_line_of_units():
+    return ("Time;Command;Position;p_A;p_B\ns;V;mm;bar;bar\n" +
+            rows([T, U_V, Y_MM, [50.0] * len(T), [60.0] * len(T)], ";"),
+            truth(further={"p_A_Pa": [50e5] * len(T), "p_B_Pa": [60e5] * len(T)}))
 
 
 @style()

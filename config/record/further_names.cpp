@@ -1,0 +1,37 @@
+#include "config/record/further_names.h"
+
+#include <cctype>
+
+namespace config::record {
+
+std::string slug(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool kept = byte >= 0x80 || std::isalnum(byte) != 0 || c == '.' || c == '-';
+    if (kept) {
+      result += c;
+    } else if (!result.empty() && result.back() != '_') {
+      result += '_';
+    }
+  }
+  while (result.ends_with('_')) result.pop_back();
+  return result.empty() ? "column" : result;
+}
+
+std::string FurtherNames::take(const std::string& name) {
+  std::string unique = name;
+  for (int k = 2; !given_.insert(unique).second; ++k) unique = name + "_" + std::to_string(k);
+  return unique;
+}
+
+std::string FurtherNames::take_with_unit(std::string_view name, const std::string& si,
+                                         bool reference) {
+  if (si == "1") return take(slug(name));
+  const bool length = si == "m" || si == "rad";
+  const std::string set_point = "reference_" + si;
+  if (reference && length && !given_.contains(set_point)) return take(set_point);
+  return take(slug(name) + "_" + si);
+}
+
+}  // namespace config::record
