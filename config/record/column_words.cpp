@@ -223,4 +223,18 @@ int score(Role role, const ReadColumn& column) {
   return points > 0 && column.setting ? points - kLessForSetting : points;
 }
 
+std::size_t roles_named(const std::vector<std::string>& headers) {
+  const std::vector<double> sample;
+  return static_cast<std::size_t>(
+      std::count_if(kMainRoles.begin(), kMainRoles.end(), [&](Role role) {
+        return std::any_of(headers.begin(), headers.end(), [&](const std::string& header) {
+          ReadColumn column;
+          column.text = parse_header(header);
+          column.words = words_of(column.text.name);
+          column.sample = &sample;
+          return score(role, column) > 0;
+        });
+      }));
+}
+
 }  // namespace config::record

@@ -54,6 +54,9 @@ struct ReadColumn {
 /// True where no word speaks of a set point or another quantity.
 [[nodiscard]] bool is_plain(const ReadColumn& column);
 
+/// How many of time, command and position the words of headers name.
+[[nodiscard]] std::size_t roles_named(const std::vector<std::string>& headers);
+
 /// How well a column's words and unit fit a role: 100 for t_s, u_A, y_rad and their like; 0: not at
 /// all. A setting fits less than any measurement of the same words.
 [[nodiscard]] int score(Role role, const ReadColumn& column);

@@ -45,6 +45,14 @@ bool leads_to(double first, const std::vector<double>& values) {
   return even(values[0] - first);
 }
 
+/// True where `first` is less than a column's values, and not far less: a number of a channel.
+bool is_before(double first, const std::vector<double>& values) {
+  constexpr double kMostSteps = 20.0;
+  if (values.empty() || !(first < values[0])) return false;
+  return values.size() < 2 || !(values[1] > values[0]) ||
+         values[0] - first <= kMostSteps * (values[1] - values[0]);
+}
+
 }  // namespace
 
 std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
@@ -66,7 +74,7 @@ std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
     ++numbers;
     begins = begins || others.empty();
     leads = leads || (c == 0 && leads_to(value, rows.head[c]));
-    before = before || (c == 0 && !rows.head[c].empty() && value < rows.head[c].front());
+    before = before || (c == 0 && is_before(value, rows.head[c]));
   }
   if (others.empty() || numbers == 0) return std::nullopt;
   const bool named = rows.named && (before || others.size() == 1);
@@ -76,6 +84,13 @@ std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
   });
   if (!row && !damaged) return std::nullopt;
   return others.front();
+}
+
+bool leads_to_rows(const std::vector<std::string>& fields, const RowsBelow& rows) {
+  double value = 0.0;
+  return rows.kinds.front() == FieldKind::number &&
+         cell_kind(fields.front(), rows.decimal, value) == FieldKind::number &&
+         leads_to(value, rows.head.front());
 }
 
 bool are_rows(const std::vector<std::string>& upper, const std::vector<std::string>& lower,

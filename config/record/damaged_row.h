@@ -21,10 +21,14 @@ struct RowsBelow {
 
 /// The first damaged field; none where the line is no row. A line that begins with a number is a
 /// row where it is mostly numbers, where that number leads to the column's own, or below the names
-/// where all but one field are numbers or the first is less than the column's own; any other line
-/// with a number is one where all that are none look damaged.
+/// where all but one field are numbers or the first is a few steps before the column's own; any
+/// other line with a number is one where all that are none look damaged.
 [[nodiscard]] std::optional<std::size_t> damaged_field(const std::vector<std::string>& fields,
                                                        const RowsBelow& rows);
+
+/// True where a line begins with a number that is an even step before those below: a row, whatever
+/// stands in it.
+[[nodiscard]] bool leads_to_rows(const std::vector<std::string>& fields, const RowsBelow& rows);
 
 /// True where two lines, one after the other, are earlier rows of the same table: a line between
 /// them and the rows below is one as well, whatever stands in it.

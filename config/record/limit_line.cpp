@@ -49,21 +49,23 @@ bool is_limit_word(std::string_view field) {
 
 bool is_limit_line(const std::vector<std::string>& fields, char decimal) {
   bool word = false;
-  bool range = false;
+  std::size_t ranges = 0;
   std::size_t numbers = 0;
   for (const std::string& field : fields) {
     if (is_missing(field)) continue;
     if (is_range(field, decimal)) {
-      range = true;
+      ++ranges;
     } else if (is_bound(field, decimal)) {
       ++numbers;
-    } else if (!word && !range && numbers == 0 && is_limit_word(field)) {
+    } else if (!word && ranges == 0 && numbers == 0 && is_limit_word(field)) {
       word = true;
     } else {
       return false;
     }
   }
-  return range || (word && numbers > 0);
+  if (word || ranges == 0) return word && ranges + numbers > 0;
+  // "0;1;0..35" is a row with a damaged field
+  return ranges > numbers || !is_bound(fields.front(), decimal);
 }
 
 }  // namespace config::record

@@ -135,6 +135,18 @@ class FormFinder {
     return known;
   }
 
+  /// True where the upper of two lines is the one of names: a title has units behind numbers
+  /// ("Pump 140 bar") and less of time, command and position.
+  static bool names_more(const std::vector<std::string>& upper,
+                         const std::vector<std::string>& lower) {
+    if (words_known(upper) <= words_known(lower)) return false;
+    const bool value = std::any_of(upper.begin(), upper.end(), [](const std::string& field) {
+      const HeaderText text = parse_header(field);
+      return text.unit.known() && is_digit(text.name.back()) && field.ends_with(text.unit.text);
+    });
+    return !value || roles_named(upper) >= roles_named(lower);
+  }
+
   /// A line of as many fields as the rows, directly above them; blank lines between are passed.
   struct Candidate {
     std::size_t line = 0;
@@ -178,8 +190,8 @@ class FormFinder {
       if (candidate.units && units == nullptr && (header == nullptr || !has_units(*header))) {
         units = &candidate;
         below_units = std::exchange(header, nullptr);
-      } else if (const int known = words_known(candidate.names);
-                 known > 0 && (header == nullptr || known > words_known(header->names))) {
+      } else if (words_known(candidate.names) > 0 &&
+                 (header == nullptr || names_more(candidate.names, header->names))) {
         header = &candidate;
       }
     }
@@ -195,10 +207,10 @@ class FormFinder {
       const Candidate& candidate = *each;
       if (&candidate == units || candidate.commented) continue;
       if (header != nullptr && candidate.line < header->line) continue;
-      if (!candidate.limits) {
+      if (!candidate.limits || leads_to_rows(candidate.names, rows_below(header != nullptr))) {
         require_no_row(candidate.line, candidate.names, header == &candidate ? nullptr : header);
       }
-      if (header != nullptr && header != &candidate) {
+      if (header != nullptr ? header != &candidate : candidate.limits) {
         const std::string_view text = trimmed(lines_[candidate.line].text);
         form_.passed.push_back({candidate.line + 1, std::string(text)});
       }

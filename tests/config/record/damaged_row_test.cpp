@@ -76,6 +76,63 @@ TEST(Csv, NotesLinesBetweenNamesAndNumbersThatAreNoRows) {
             begin + "line 2 'min;-10;-100'");
 }
 
+TEST(Csv, NotesLabelsBelowTheNamesWhereTimesBeginLate) {
+  std::string rows;
+  for (int k = 0; k < 20; ++k) rows += std::to_string(5.0 + 0.005 * k) + ";1;0.1\n";
+  const std::string names = "Time [s];Command [V];Position [mm]\n";
+  for (const char* labels : {"1;CH1;CH2", "0;valve;rod", "X1;CH1;CH2", "2.5;1st;2nd"}) {
+    const Record record = read(names + labels + "\n" + rows);
+    EXPECT_EQ(record.size(), 20U);
+    EXPECT_THAT(record.notes, testing::Contains("left out, neither names nor a row: line 2 '" +
+                                                std::string(labels) + "'"));
+  }
+  // a few steps before the first row, or words of a damaged field
+  expect_bad(names + "4.98;CH1;CH2\n" + rows, ":2", "column Command [V]: 'CH1' is no number");
+  expect_bad(names + "1;OL;OL\n" + rows, ":2", "column Command [V]: 'OL' is no number");
+}
+
+TEST(Csv, TakesARowWithARangeForNoLineOfLimits) {
+  const std::string rows = "0.005;1;0.1\n0.010;2;0.2\n0.015;3;0.3\n0.020;3;0.3\n";
+  const std::string names = "Time [s];Command [V];Position [mm]\n";
+  for (const char* first : {"0;1;0..35", "0;1;0 - 35", "3;1;0..35"}) {
+    expect_bad(names + first + "\n" + rows, ":2", "column Position [mm]: '0");
+    expect_bad(first + ("\n" + rows), ":1", "column 3: '0");
+  }
+  expect_bad(names + "0;0..10;0..35\n" + rows, ":2", "column Command [V]: '0..10' is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0..35\n" + kRows, ":2", "column y_m: '0..35' is no number");
+}
+
+TEST(Csv, NotesLimitsWhereNothingNamesTheColumns) {
+  ReadOptions options;
+  options.map = "t=1[s],u=2[V],y=3[mm]";
+  const TemporaryFile file("0..10;-10..10;0..35\n0;1;0.1\n0.005;2;0.2\n0.010;3;0.3\n");
+  const Record record = read_record(file.path(), options);
+  EXPECT_EQ(record.size(), 3U);
+  EXPECT_THAT(record.notes, testing::Contains("left out, neither names nor a row: line 1 "
+                                              "'0..10;-10..10;0..35'"));
+  // below the own names, too
+  const Record own = read("t_s,u_V,y_m\nmin,-10,0\n" + kRows);
+  EXPECT_EQ(own.size(), 3U);
+  EXPECT_THAT(own.notes,
+              testing::Contains("left out, neither names nor a row: line 2 'min,-10,0'"));
+}
+
+TEST(Csv, TakesATitleOfAsManyFieldsForNoNames) {
+  const std::string rows = "0,1,0.1\n0.005,2,0.2\n0.010,3,0.3\n";
+  for (const char* title :
+       {"Test 12,Rig A,2024-05-01", "Test 12,Rig A,140 bar", "10 s,24 V,Pump 140 bar",
+        "Test 12,2024-05-01,10:32:11", "12,17,2024-05-01"}) {
+    for (const char* names : {"Time,Command,Position\ns,V,mm\n", "t_s,u_V,y_mm\n",
+                              "Time [s],Command [V],Position [mm]\n"}) {
+      const Record record = read(title + ("\n" + std::string(names)) + rows);
+      EXPECT_EQ(record.size(), 3U) << title << names;
+      EXPECT_DOUBLE_EQ(record.y_m[0], 1e-4) << title << names;
+    }
+  }
+  expect_bad("Test 12,Rig A,Pump 140 bar\ntime,valve,pos\n" + rows, ":2",
+             "'t=time[s],u=valve[V],y=pos[m]'");
+}
+
 TEST(Csv, RefusesWordsInPlaceOfTimeCommandOrPosition) {
   expect_bad("t_s;u_V;y_m\n0;on;2\n1;off;2\n2;on;2\n", ":1", "column u_V holds text, not numbers");
   expect_bad("t_s;u_V;y_m\n0;1;x\n1;1;x\n2;1;x\n", ":1", "column y_m holds text, not numbers");

@@ -759,6 +759,11 @@ def twincat_scope_with_two_times():
 
 
 @style()
+def title_with_as_many_fields():
+    return ("Test 12;Rig A;Pump 140 bar\nTime;Command;Position\ns;V;mm\n" + rows([T, U_V, Y_MM], ";"), truth())
+
+
+@style()
 def ports_in_a_line_of_units():
     return ("Time;Command;Position;p_A;p_B\ns;V;mm;bar;bar\n" +
             rows([T, U_V, Y_MM, [50.0] * len(T), [60.0] * len(T)], ";"),
