@@ -292,7 +292,7 @@ class Understanding {
                                                      : schema::joined(problems_, "; ");
     what += "; " + listing(head_, columns_);
     if (const std::string map =
-            probable_map(columns_, known(), taken_, has_rate_);
+            probable_map(columns_, known(), taken_, has_rate_, head_.stated_step_s);
         !map.empty())
       what += (nameless ? "; for example: --map " : "; probably: --map ") + map;
     return bad_data(head_.where, what);

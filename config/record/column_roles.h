@@ -26,6 +26,7 @@ struct FileHead {
   std::string where;  ///< "file:line" of the header
   std::vector<FileColumn> columns;
   double step_s = 0.0;         ///< sampling period that the file states; 0: none
+  double stated_step_s = 0.0;  ///< likewise, good enough for a proposal alone
   bool time_in_s = false;      ///< a time without a unit is in s (the format says so)
   bool variables = false;      ///< "variable" instead of "column" in messages
   std::string more;            ///< what else the file has, for the list of columns

@@ -23,6 +23,7 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
   const std::size_t line = form.header_line > 0 ? form.header_line : form.data_line;
   head.where = name + ":" + std::to_string(line);
   head.step_s = form.step_s;
+  head.stated_step_s = form.stated_step_s;
   for (std::size_t i = 0; i < form.kinds.size(); ++i) {
     FileColumn column;
     if (!form.names.empty()) column.header = form.names[i];

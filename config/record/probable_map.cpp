@@ -54,9 +54,26 @@ std::string typed(const std::vector<ReadColumn>& columns, std::size_t i) {
   return number;
 }
 
+/// Times of Windows, since 1601.
+bool counts_tenths_of_us(const ReadColumn& column) {
+  return !column.text.unit.known() && !column.sample->empty() && column.sample->front() > 1e17 &&
+         column.sample->front() < 5e17;
+}
+
+/// Numbers of samples, where another period is stated.
+bool is_counter(const ReadColumn& column, double step_s) {
+  const std::vector<double>& sample = *column.sample;
+  return !column.text.unit.known() && !column.clock && sample.size() > 1 &&
+         sample[1] - sample[0] == 1.0 && step_s != 1.0;
+}
+
 std::string probable_unit(Role role, const ReadColumn& column) {
   const std::vector<double>& sample = *column.sample;
   if (role == Role::time) {
+    // Counted since 1970, a date says its unit by its size.
+    const double first = sample.empty() ? 0.0 : sample.front();
+    if (first >= 1e18) return "ns";
+    if (first >= 1e15 && first < 1e16) return "us";
     const bool coarse = sample.size() > 1 && sample[1] - sample[0] >= 0.5;
     return coarse ? "ms" : "s";
   }
@@ -93,7 +110,7 @@ std::string listing(const FileHead& head, const std::vector<ReadColumn>& columns
 
 std::string probable_map(const std::vector<ReadColumn>& columns,
                          const std::array<std::optional<std::size_t>, 3>& known,
-                         const std::set<std::size_t>& taken, bool has_rate) {
+                         const std::set<std::size_t>& taken, bool has_rate, double stated_step_s) {
   if (columns.size() < 2) return "";
   std::array<std::optional<std::size_t>, 3> chosen = known;
   std::set<std::size_t> used = taken;
@@ -125,12 +142,22 @@ std::string probable_map(const std::vector<ReadColumn>& columns,
     if (role == Role::time && has_rate) continue;
     map += map.empty() ? "" : ",";
     map += std::string(kRoleKeys[r]) + "=";
+    const bool by_rate = role == Role::time && stated_step_s > 0.0 &&
+                         (!chosen[r] || is_counter(columns[*chosen[r]], stated_step_s));
+    if (by_rate) {
+      map += fmt::format("{:.9g}s", stated_step_s);
+      continue;
+    }
     if (!chosen[r]) {
-      map += role == Role::time ? "1000Hz" : "COLUMN[UNIT]";
+      map += role == Role::time ? "RATEHz" : "COLUMN[UNIT]";
       continue;
     }
     map += typed(columns, *chosen[r]);
     const ReadColumn& column = columns[*chosen[r]];
+    if (role == Role::time && counts_tenths_of_us(column)) {
+      map += "*1e-7[s]";
+      continue;
+    }
     const bool stated = fits(role, column.text.unit.si) || (role == Role::time && column.clock);
     // A unit of another quantity is a sensor's signal: the mapping may say so.
     const bool signal = column.text.unit.known() && column.text.unit.si != "s" &&

@@ -17,9 +17,11 @@ namespace config::record {
 
 /// "'t=Time,u=Command,y=3[mm]'". `known` are the columns of time, command and position that are
 /// found already; the others are those whose units, words and values fit best, `taken` excepted,
-/// which have a use already. `has_rate`: without a time. Empty with fewer than two columns.
+/// which have a use already. `has_rate`: without a time. `stated_step_s`: the period that the file
+/// states; 0: none. Empty with fewer than two columns.
 [[nodiscard]] std::string probable_map(const std::vector<ReadColumn>& columns,
                                        const std::array<std::optional<std::size_t>, 3>& known,
-                                       const std::set<std::size_t>& taken, bool has_rate);
+                                       const std::set<std::size_t>& taken, bool has_rate,
+                                       double stated_step_s);
 
 }  // namespace config::record

@@ -10,6 +10,7 @@
 #include "config/record/layout.h"
 #include "config/record/limit_line.h"
 #include "config/record/own_form.h"
+#include "config/record/stated_step.h"
 #include "config/record/text_fields.h"
 #include "config/record/unit_line.h"
 #include "config/record/unit_text.h"
@@ -307,6 +308,7 @@ class FormFinder {
         x_is_time_ = true;
       }
     }
+    form_.stated_step_s = stated_step_s(lines_, end, form_.dialect);
     const bool labview = x_is_time_ && form_.header_line > 0 && !form_.names.empty() &&
                          folded(form_.names[0]) == "xvalue";
     if (!labview) {

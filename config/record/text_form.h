@@ -31,6 +31,7 @@ struct TextForm {
   std::size_t data_offset = 0;            ///< byte at which the first row begins
   std::size_t data_line = 0;              ///< its line, from 1
   double step_s = 0.0;                    ///< sampling period in the lines above; 0: none
+  double stated_step_s = 0.0;             ///< likewise, by words that may mean another
 };
 
 /// Lines that find_form looks at.

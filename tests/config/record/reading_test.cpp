@@ -215,6 +215,33 @@ TEST(Roles, ProposeTheAxisOfAnOscilloscopeForTheTimeAndNoColumnTwice) {
   EXPECT_EQ(read("Time [s],Command [V],X-Axis [mm]\n0,1,2\n1,1,3\n2,1,4\n").y_m[2], 4e-3);
 }
 
+TEST(Roles, ProposeTheRateThatTheFileStatesAndInventNone) {
+  const std::string rows = "1\t10\n2\t11\n1\t12\n";
+  const std::string names = "Command [V]\tPosition [mm]\n";
+  EXPECT_THAT(error_of(names + rows), HasSubstr("--map 't=RATEHz,u=Command,y=Position'"));
+  for (const char* stated : {"dt [s]:\t0.005\n", "Sample Rate\t200 Hz\n", "delta t:\t5 ms\n",
+                             "Abtastrate [kHz]\t0.2\n", "Sample interval: 0.005\n"}) {
+    EXPECT_THAT(error_of(stated + names + rows), HasSubstr("'t=0.005s,u=Command,y=Position'"))
+        << stated;
+  }
+  // as oscilloscopes of Rigol write them: numbers of samples
+  EXPECT_THAT(error_of("X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-1.0e+00,5.0e-03\n"
+                       "0,1,10,\n1,2,11,\n2,1,12,\n"),
+              HasSubstr("'t=0.005s,u=2[V],y=3[mm]'"));
+}
+
+TEST(Roles, TellTheUnitOfATimeSince1970ByItsSize) {
+  const auto error = [](const char* begin, const char* end) {
+    std::string text = "Time,Command [V],Position [mm]\n";
+    for (int k = 1; k < 5; ++k) text += begin + std::to_string(k) + end + ",1,2\n";
+    return error_of(text);
+  };
+  EXPECT_THAT(error("171455953", "000"), HasSubstr("t=Time[ms]"));
+  EXPECT_THAT(error("171455953", "000000"), HasSubstr("t=Time[us]"));
+  EXPECT_THAT(error("171455953", "000000000"), HasSubstr("t=Time[ns]"));
+  EXPECT_THAT(error("1335898273", "0000000"), HasSubstr("t=Time*1e-7[s]"));  // Windows
+}
+
 TEST(Roles, TakeNoReferenceForAPositionAndNoPositionForACommand) {
   const Record record =
       read("Time [s],Position command [mm],Command [V],Position [mm]\n0,1,2,3\n1,1,2,3\n2,1,2,3\n");

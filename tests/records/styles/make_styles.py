@@ -744,10 +744,29 @@ def oscilloscope_with_a_mapping():
 
 
 @style()
+def bad_rigol_oscilloscope():
+    lines = "".join("%d,%.4f,%.4f,\n" % (k, u, y / 20) for k, (u, y) in enumerate(zip(U_V, Y_MM)))
+    return ("X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-1.000000e+00,5.000000e-03\n" + lines,
+            refused("no header", "--map 't=0.005s,u=2[V],y=3[mm]'"))
+
+
+@style()
 def picoscope_with_a_mapping():
     return ("Time,Channel A,Channel B\n(ms),(V),(mV)\n\n" +
             rows([[1000 * t for t in T], U_V, [50 * y for y in Y_MM]]),
             truth(arguments=["--map", "u=Channel A,y=Channel B*0.02[mm]"], tolerance=1e-8))
+
+
+@style()
+def bad_time_stamps_of_windows():
+    t = [str(133589827310000000 + 50000 * k) for k in range(len(T))]
+    return ("TIMESTAMP,MAIN.fValve,MAIN.fActPos\n" + rows([t, U_V, Y_MM]), refused("t=TIMESTAMP*1e-7[s]"))
+
+
+@style("txt")
+def bad_labview_graph_without_times():
+    return ("dt [s]:\t0.005\nCommand [V]\tPosition [mm]\n" + rows([U_V, Y_MM], "\t"),
+            refused("lacks a time column", "--map 't=0.005s,u=Command,y=Position'"))
 
 
 @style()
