@@ -1,5 +1,6 @@
 #include "workbench/serve/jobs.h"
 
+#include <filesystem>
 #include <new>
 
 #include "config/schema/joined.h"
@@ -14,6 +15,10 @@ namespace workbench::serve {
 namespace {
 
 namespace selection = estimator::greybox::selection;
+
+std::string base_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
 
 }  // namespace
 
@@ -72,6 +77,9 @@ bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const
         const diagnose::DiagnosisReport report =
             diagnose::run(prepared, [this] { return cancelled_.load(); });
         JobResult result{"", "", "", "", request.command, summary_of(report)};
+        result.summary["only"] = request.only;
+        result.summary["model"] = base_name(request.model);
+        result.summary["record"] = base_name(request.records.front());
         if (!report.fitted()) return result;
         result.model = request.output;
         result.text = diagnose::better_model_text(report);

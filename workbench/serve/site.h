@@ -72,6 +72,8 @@ class Site final : public HttpHandler {
   Json begin_diagnosis(const Json& body);
   /// At most ten events a second.
   Jobs::Progress progress();
+  /// On the pages from now on; a diagnosis of all effects stays beside what comes after it.
+  void show_result(Json result);
   void finish_job(JobResult result, const std::string& parent, const std::string& output);
   /// Writes the model of a job, which becomes the trial.
   void take_result(const JobResult& result, const std::string& parent);
@@ -96,7 +98,7 @@ class Site final : public HttpHandler {
   std::atomic<HttpServer*> server_{nullptr};
   // Of the study's thread:
   Study study_;
-  Json last_result_;
+  Json last_result_, last_diagnosis_;
   std::string live_model_;
   std::string trouble_;  ///< of the folder; empty: none
   struct Unsaved {

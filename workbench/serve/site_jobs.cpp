@@ -37,7 +37,8 @@ Site::Json Site::begin_fit(const Json& body) {
 }
 
 Site::Json Site::begin_diagnosis(const Json& body) {
-  diagnose::DiagnosisRequest request = study_.diagnosis_request(texts_in(body, "only"));
+  diagnose::DiagnosisRequest request = study_.diagnosis_request(
+      texts_in(body, "only"), body.contains("model") ? text_in(body, "model") : "");
   const std::string parent = file_name(request.model);
   const std::string output = file_name(request.output);
   const bool begun = jobs_.diagnose(
@@ -51,7 +52,6 @@ Site::Json Site::begin_diagnosis(const Json& body) {
 void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
   study_lane_.post_kept([this, result = std::move(result), parent, output] {
     if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
-    last_result_ = result.summary;
     std::string error = result.error;
     try {
       take_result(result, parent);
@@ -59,16 +59,26 @@ void Site::finish_job(JobResult result, const std::string& parent, const std::st
       error = failed.what();
       check_folder(true);
       if (!trouble_.empty()) {
-        last_result_ = result.summary;
+        show_result(result.summary);
         last_result_["unsaved"] = error;
         unsaved_.push_back({result, parent});
         return publish_state();
       }
     }
     folder_.release(output);
-    if (!error.empty()) last_result_ = {{"kind", "error"}, {"words", error}};
+    show_result(error.empty() ? result.summary : Json{{"kind", "error"}, {"words", error}});
     publish_state();
   });
+}
+
+void Site::show_result(Json result) {
+  const bool of_all = result.contains("only") && result["only"].empty();
+  if (of_all) {
+    last_diagnosis_ = result;
+  } else {
+    result["before"] = last_diagnosis_;
+  }
+  last_result_ = std::move(result);
 }
 
 void Site::take_unsaved() {
@@ -76,16 +86,16 @@ void Site::take_unsaved() {
     const JobResult& result = unsaved_.front().result;
     try {
       take_result(result, unsaved_.front().parent);
-      last_result_ = result.summary;
+      show_result(result.summary);
     } catch (const std::exception& failed) {
       const std::string why = failed.what();
       trouble_ = folder_.trouble(true);
       if (!trouble_.empty()) {
-        last_result_ = unsaved_.back().result.summary;
+        show_result(unsaved_.back().result.summary);
         last_result_["unsaved"] = why;
         return;
       }
-      last_result_ = {{"kind", "error"}, {"words", why}};
+      show_result({{"kind", "error"}, {"words", why}});
     }
     folder_.release(file_name(result.model));
     unsaved_.pop_front();

@@ -294,7 +294,6 @@ const Study::Shown& Study::front() const {
 }
 
 std::string Study::write_report() {
-  const Shown& shown = front();
   const present::PrintedAxis axis(motion());
   std::string file = folder_.fresh_name(stem(shown_model()) + ".html");
   std::vector<std::string> words{"spoolwatch", "compare", shown_model(), open_.record};
@@ -304,7 +303,7 @@ std::string Study::write_report() {
   Open next = open_;
   next.lineage.remember(command);
   MadeFile made(folder_.path_of(file));
-  present::write_report(compare::make_report(shown.comparison, command), folder_.path_of(file));
+  present::write_report(compare::make_report(front().comparison, command), folder_.path_of(file));
   save_session(folder_, next);
   open_ = std::move(next);
   made.keep();
@@ -355,9 +354,10 @@ fit::FitRequest Study::fit_request(const ParameterValues& values) const {
   return request;
 }
 
-diagnose::DiagnosisRequest Study::diagnosis_request(const std::vector<std::string>& only) const {
+diagnose::DiagnosisRequest Study::diagnosis_request(const std::vector<std::string>& only,
+                                                    const std::string& from) const {
   (void)front();
-  const std::string& model = shown_model();
+  const std::string& model = from.empty() ? shown_model() : from;
   diagnose::DiagnosisRequest request;
   request.model = folder_.existing(model);
   request.records = {folder_.existing(open_.record)};

@@ -66,8 +66,9 @@ class Study {
 
   /// Requests of the running commands for what is open, with a fresh output file.
   [[nodiscard]] fit::FitRequest fit_request(const ParameterValues& values) const;
-  [[nodiscard]] diagnose::DiagnosisRequest diagnosis_request(
-      const std::vector<std::string>& only) const;
+  /// A diagnosis begins from the model `from`; empty: the one that is shown.
+  [[nodiscard]] diagnose::DiagnosisRequest diagnosis_request(const std::vector<std::string>& only,
+                                                             const std::string& from = "") const;
   /// A model that a command has made from `parent` becomes the trial. Throws as the above; the
   /// model's file stays.
   void take_trial(const std::string& model, const std::string& parent, const std::string& what,

@@ -30,10 +30,11 @@ class StudyPage : public testing::Test {
   ordered_json printed(cli::Setup setup, std::vector<std::string> arguments) const {
     return ordered_json::parse(workbench_test::printed_by(setup, std::move(arguments)));
   }
-  ordered_json finished() const {
+  /// The state after a job whose result is another than `before`.
+  ordered_json finished(const ordered_json& before = nullptr) const {
     for (int i = 0; i < 600; ++i) {
       const ordered_json state = page.state();
-      if (!state["running"].get<bool>() && !state["result"].is_null()) return state;
+      if (!state["running"].get<bool>() && state["result"] != before) return state;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     return {};

@@ -98,6 +98,34 @@ TEST_F(StudyPage, ADiagnosisBecomesATrialThatIsAcceptedAndUndone) {
   EXPECT_TRUE(std::filesystem::exists(page.session / "thesis-diagnosed.toml"));
 }
 
+TEST_F(StudyPage, ACandidateIsTriedOnTheModelThatWasDiagnosed) {
+  ASSERT_EQ(page.post("diagnose").status, 200);
+  const ordered_json all = finished()["result"];
+  EXPECT_EQ(all["model"], "thesis.toml");
+  EXPECT_EQ(all["record"], "multisine.csv");
+  ASSERT_EQ(page.post("accept").status, 200);
+  // The accepted model has both effects already.
+  const ordered_json both{"null_bias", "friction"};
+  ASSERT_EQ(page.post("diagnose", {{"only", both}, {"model", all["model"]}}).status, 200);
+  const ordered_json tried = finished(all);
+  EXPECT_EQ(tried["trial"], "thesis+null_bias+friction.toml");
+  EXPECT_EQ(tried["model"], "thesis-diagnosed.toml") << "what was accepted stays until the next";
+  EXPECT_EQ(tried["commands"].back(),
+            "spoolwatch diagnose thesis.toml multisine.csv --only null_bias --only friction -o "
+            "thesis+null_bias+friction.toml");
+  EXPECT_EQ(tried["result"]["before"]["candidates"], all["candidates"])
+      << "the other candidates can be tried still";
+  ASSERT_EQ(page.post("undo").status, 200);
+  EXPECT_EQ(page.state()["model"], "thesis-diagnosed.toml");
+
+  ASSERT_EQ(page.post("diagnose", {{"only", both}}).status, 200);
+  const ordered_json refused = finished(tried["result"])["result"];
+  EXPECT_EQ(refused["kind"], "error") << "the model that is open has them";
+  EXPECT_EQ(refused["before"]["candidates"], all["candidates"]);
+  EXPECT_EQ(page.post("diagnose", {{"model", "../thesis.toml"}}).status, 422);
+  EXPECT_EQ(page.post("diagnose", {{"model", "none.toml"}}).status, 422);
+}
+
 TEST_F(StudyPage, AnEffectAddedByHandHasSlidersAndIsFitted) {
   ASSERT_EQ(page.post("add", {{"effect", "null_bias"}}).status, 200);
   const ordered_json added = page.state();

@@ -2,7 +2,7 @@
 import {html, useEffect, useState} from './preact.js';
 import {post} from './server.js';
 
-const WIDTH = 520, HEIGHT = 280, LEFT = 62, RIGHT = 10, TOP = 10, BOTTOM = 40;
+const WIDE = 520, NARROW = 300, HEIGHT = 280, LEFT = 62, RIGHT = 10, TOP = 10, BOTTOM = 40;
 
 /// Round numbers within the range, about `count` of them.
 export function ticks(low, high, count = 6) {
@@ -50,8 +50,9 @@ function area(x, low, high, across, up) {
 }
 
 /// law: {title, note, x, y, model} and where there are some samples, mean, before, low and high, a band
-/// about the model.
-export function Law({law, beside}) {
+/// about the model. narrow: for a column at the side, whose text is then as large as elsewhere.
+export function Law({law, beside, narrow}) {
+  const WIDTH = narrow ? NARROW : WIDE;
   const lists = [law.model, law.mean, law.before, law.samples].filter(Boolean);
   const xs = range(...lists.map((one) => one.x));
   const ys = range(...lists.map((one) => one.y), law.low || [], law.high || []);
@@ -68,7 +69,7 @@ export function Law({law, beside}) {
     <figure class="law-curve">
       <figcaption><b>${law.title}</b> <small>${law.note}</small></figcaption>
       <svg viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label=${law.title}>
-        ${ticks(...xs).map((v) => html`
+        ${ticks(...xs, narrow ? 4 : 6).map((v) => html`
           <line class=${v === 0 ? 'zero' : 'grid'} x1=${across(v)} x2=${across(v)} y1=${TOP} y2=${HEIGHT - BOTTOM} />
           <text x=${across(v)} y=${HEIGHT - BOTTOM + 15} text-anchor="middle">${v}</text>`)}
         ${ticks(...ys).map((v) => html`

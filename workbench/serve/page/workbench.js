@@ -222,7 +222,8 @@ function Progress({progress, running, cancel}) {
   return html`
     <section class="progress" role="status">
       <progress aria-label="progress" max=${of || 1} ...${of ? {value: done} : {}}></progress>
-      <p class="row"><button onClick=${cancel}>Cancel</button> <span>${text}</span></p>
+      <p class="row"><button onClick=${cancel} title="what was found by then is kept">Cancel</button>
+        <span>${text}</span></p>
     </section>`;
 }
 
@@ -306,7 +307,8 @@ export function Workbench({state, progress}) {
   const run = (what, body = {}) => act(() => post(what, body));
   // Without a third column it stands below the verdict.
   const narrow = useMedia('(max-width: 1180px)');
-  const result = html`<${Result} result=${state.result} run=${run} running=${state.running} />`;
+  const result = html`<${Result} result=${state.result} run=${run} running=${state.running}
+                                record=${state.record} narrow=${!narrow} />`;
   const node = state.lineage.find((one) => one.model === state.model);
   return html`
     <main class="workbench">
