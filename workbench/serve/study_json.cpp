@@ -340,8 +340,12 @@ ordered_json Study::side_by_side() const {
                     {"there", figures(*beside_)}};
   out["differences"] = ordered_json::array();
   for (const ModelDifference& one : differences(shown.prepared.model, beside_->prepared.model)) {
-    out["differences"].push_back(
-        {{"name", one.name}, {"here", typeset(one.here)}, {"there", typeset(one.there)}});
+    const auto dot = one.name.find('.');
+    const std::string effect = dot == std::string::npos ? "" : one.name.substr(0, dot) + ": ";
+    out["differences"].push_back({{"name", one.name},
+                                  {"words", effect + config::units::parameter_words(one.name)},
+                                  {"here", typeset(one.here)},
+                                  {"there", typeset(one.there)}});
   }
   return out;
 }

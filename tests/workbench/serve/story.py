@@ -145,9 +145,9 @@ def story(args, folder):
         page.click("button[aria-label='beside thesis.toml']")
         page.wait("document.querySelector('.side-by-side')")
         sides = page.run("document.querySelector('.side-by-side').innerText")
-        for text in ("thesis-diagnosed.toml", "1.92 mm", "2.43 µm", "friction.coulomb_N", "null_bias.offset_V"):
+        for text in ("thesis-diagnosed.toml", "1.92 mm", "2.43 µm", "friction: Coulomb", "null_bias: offset", "supply pressure"):
             expect(f"{text} in {sides}", text in sides)
-        for text in ("area_m2", "friction.static_N"):
+        for text in ("area", "friction: static"):
             expect(f"{text} does not differ", text not in sides)
         page.wait("[...document.querySelectorAll('.u-label')].some((l) => l.textContent === 'thesis.toml')")
         page.run("document.querySelector('.side-by-side').scrollIntoView({block: 'start'})")
@@ -155,10 +155,29 @@ def story(args, folder):
         page.click("button[aria-label='beside thesis.toml']")
         page.wait("!document.querySelector('.side-by-side')")
 
+        # A candidate of the model that was diagnosed is tried, although the accepted one has it; the others stay.
+        page.click("button[aria-label='try friction']")
+        page.wait("document.querySelector('.result h2').textContent === 'Tried: thesis.toml + null_bias + friction'", 120)
+        page.wait("document.querySelector('.verdict .tag')")
+        page.wait("document.querySelector('.result ~ .result button[aria-label=\"try backlash\"]')")
+        # The curves of the model before can be hidden, so that the axes fit those of the trial.
+        off = "[...document.querySelectorAll('.u-series.u-off .u-label')].filter((l) => l.textContent === 'before').length"
+        expect("the model before is drawn", page.run(off) == 0)
+        page.click_text("Hide before")
+        page.wait(off + " === 2")
+        picture(page, "tried")
+        page.click_text("Hide before")
+        page.wait(off + " === 0")
+        page.click_text("Undo")
+        page.wait("!document.querySelector('.verdict .tag') && document.querySelector('#model').value"
+                  " === 'thesis-diagnosed.toml'")
+
         # Checked on another record, and taken away.
         page.drop_files("#upload", [tour / "steps.csv"])
         page.wait("document.querySelector('#record').value === 'steps.csv'")
         page.wait("document.querySelector('.verdict.good')")
+        expect("candidates of another record are not tried",
+               page.run("document.querySelector('button[aria-label=\"try backlash\"]').disabled"))
         page.click_text("Write a report")
         page.wait("[...document.querySelectorAll('.exports a')].some((a) => a.textContent.endsWith('.html'))")
         picture(page, "accepted")

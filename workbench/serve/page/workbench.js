@@ -9,14 +9,14 @@ import {latest, post, upload} from './server.js';
 import {Sliders} from './sliders.js';
 
 const SPECS = [
-  {height: 270, label: 'position, mm', series: [
+  {height: 250, label: 'position, mm', series: [
     {key: 'measured', name: 'measured', tone: 'measured', width: 2},
     {key: 'ghost_model', name: 'before', tone: 'ghost'},
     {key: 'model', name: 'model, free run', tone: 'model'}]},
-  {height: 220, label: 'error', level: 'floor', series: [
+  {height: 200, label: 'error', level: 'floor', series: [
     {key: 'ghost_error', name: 'before', tone: 'ghost'},
     {key: 'error', name: 'measured less model, drift-corrected', tone: 'residual'}]},
-  {height: 150, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
+  {height: 140, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
 ];
 
 function Files({state, act}) {
@@ -74,8 +74,8 @@ function Verdict({shown, trial, running, act, selected, select}) {
       <dl class="figures">${shown.figures.map((f) => html`
         <div><dt>${f.label}</dt><dd>${f.value}</dd></div>`)}</dl>
       ${shown.regions.length > 0 && html`
-        <p class="regions">Fails ${shown.regions.map((region, i) => html`
-          <button aria-pressed=${i === selected} onClick=${() => select(i)}
+        <p class="regions">Fails, with the share of the speed error: ${shown.regions.map((region, i) => html`
+          <button aria-pressed=${i === selected} onClick=${() => select(i === selected ? -1 : i)}
                   title=${region.share + ' of the speed error in ' + region.time_share + ' of the time'}>
             ${region.where} <small>${region.share}</small></button>`)}</p>`}
       ${!trial && html`<p class="row">
@@ -110,7 +110,7 @@ function SideBySide({beside}) {
         <tbody>${figures.labels.map((label, i) => html`
           <tr><td>${label}</td><td class="n">${figures.here[i]}</td><td class="n">${figures.there[i]}</td></tr>`)}
         ${differences.map((one) => html`
-          <tr key=${one.name}><td>${one.name}</td><td class="n">${one.here}</td><td class="n">${one.there}</td></tr>`)}
+          <tr key=${one.name}><td title=${one.name}>${one.words}</td><td class="n">${one.here}</td><td class="n">${one.there}</td></tr>`)}
         </tbody></table>
       ${differences.length === 0 && html`<p class="hint">Their parameters are the same.</p>`}
     </section>`;
@@ -128,9 +128,12 @@ function usePlots({state, values, rms}) {
   const [zoomed, setZoomed] = useState(false);
   const [marking, setMarking] = useState(false);
   const [selected, setSelected] = useState(0);
+  const [alone, setAlone] = useState(false);  // without the curves of the model before
   const shown = state.shown;
+  const before = Object.keys(values).length > 0 ? 'before' : state.beside ? state.beside.model
+    : state.trial && 'before';
   const now = useRef();
-  now.current = {state, values};
+  now.current = {state, values, alone};
 
   // The curves of the state and view, fetched once; a slider's move brings model and error anew.
   const base = useRef({});
@@ -150,6 +153,7 @@ function usePlots({state, values, rms}) {
       curves = {...curves, ...other, ghost_model: curves.model, ghost_error: curves.error};
     }
     if (!stack.current) return;
+    if (now.current.alone) curves = {...curves, ghost_model: undefined, ghost_error: undefined};
     stack.current.levels.floor = curves.floor;
     const ghost = moved ? 'before' : state.beside ? state.beside.model : 'before';
     for (const i of [0, 1]) stack.current.rename(i, i === 0 ? 'ghost_model' : 'ghost_error', ghost);
@@ -188,14 +192,15 @@ function usePlots({state, values, rms}) {
   useEffect(() => {
     stack.current.dragMeaning = marking ? 'band' : 'zoom';
   }, [marking]);
-  const region = shown && shown.regions[Math.min(selected, shown.regions.length - 1)];
+  useEffect(() => setSelected(0), [state.record, state.model, state.trial]);
+  const region = shown && shown.regions[selected];
   useEffect(() => {
     stack.current.bands = [
       {spans: region ? region.spans : [], tone: 'region'},
       {spans: state.ignored.map((span) => span.split(':').map(Number)), tone: 'ignored'}];
     stack.current.repaint();
     draw.current();
-  }, [state, selected]);
+  }, [state, selected, alone]);
   // At once, before anything else is drawn.
   const move = (values) => {
     now.current.values = values;
@@ -209,6 +214,8 @@ function usePlots({state, values, rms}) {
           Leave out a stretch</button>
         ${zoomed && html`<button onClick=${() => leaveOut(view.current.from, view.current.to)}>
           Leave out what is shown</button>`}
+        ${before && html`<button aria-pressed=${alone} onClick=${() => setAlone(!alone)}
+          title="the axes then fit the model that is shown">Hide ${before}</button>`}
         <span class="hint">${marking ? 'drag over the stretch that must not count'
                                      : 'drag to zoom, double click for the whole record; keys: arrows + − 0'}</span>
       </p>
