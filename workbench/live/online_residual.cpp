@@ -130,6 +130,10 @@ void OnlineResidual::find_worst(ResidualFigures& f) const {
              region.figures.rms_m >= kLeastShare * c.rms_m;
     });
     if (worst == regions.end()) return;
+    for (validation::RegionRange& one : worst->ranges) {
+      one.lowest = one.lowest && one.variable != "time";  // samples begin with no record
+    }
+    f.worst_spans = compare::region_spans(c, *worst);
     const validation::RegionRange& range = worst->ranges.front();
     f.worst = present::where(*worst);
     f.worst_variable = range.variable;

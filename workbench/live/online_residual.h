@@ -9,10 +9,12 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/ensemble.h"
 #include "plant_sim/model_file.h"
+#include "workbench/compare/region_spans.h"
 
 namespace workbench::live {
 
@@ -30,7 +32,8 @@ struct ResidualFigures {
   std::string worst_variable;               ///< "v", "u", "y", ...
   double worst_from = 0.0, worst_to = 0.0;  ///< SI
   double worst_rms_m = 0.0;
-  std::string note;  ///< why a figure is missing
+  std::vector<compare::TimeSpan> worst_spans;  ///< when the samples were in it, as t_s
+  std::string note;                            ///< why a figure is missing
 };
 
 class OnlineResidual {

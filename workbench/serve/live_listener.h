@@ -153,9 +153,21 @@ class LiveListener final : public live::FeedListener {
   void update_model_figures() {
     model_figures_ = nullptr;
     if (!residual_) return;
-    model_figures_ = nlohmann::ordered_json::parse(live::json_of(residual_->figures()));
+    const live::ResidualFigures figures = residual_->figures();
+    model_figures_ = nlohmann::ordered_json::parse(live::json_of(figures));
     add_words(model_figures_);
-    if (model_figures_["worst"].is_object()) add_words(model_figures_["worst"]);
+    nlohmann::ordered_json& worst = model_figures_["worst"];
+    if (!worst.is_object()) return;
+    add_words(worst);
+    worst["where"] = present::typeset(worst["where"].get<std::string>());
+    worst["spans"] = nlohmann::ordered_json::array();
+    const auto newest = std::find_if(points_.rbegin(), points_.rend(),
+                                     [](const LivePoint& point) { return point.tick >= 0; });
+    if (newest == points_.rend()) return;
+    const double began_s = newest->t_s - static_cast<double>(newest->tick) * newest->sample_time_s;
+    for (const compare::TimeSpan& span : figures.worst_spans) {
+      worst["spans"].push_back({began_s + span.from_s, began_s + span.to_s});
+    }
   }
   [[nodiscard]] nlohmann::ordered_json status() const {
     nlohmann::ordered_json out;

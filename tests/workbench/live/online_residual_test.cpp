@@ -94,6 +94,28 @@ TEST(OnlineResidual, TheHealthyTimeBeforeAFaultIsNotTheWorst) {
       << figures.worst << ": " << figures.worst_rms_m;
 }
 
+TEST(OnlineResidual, TheWorstTimeIsThatOfTheDaemonNotOfTheWindow) {
+  const program::Folder folder;
+  const std::string log = live_test::make_log(folder.path() / "log", "20");
+  const auto record = config::record::read_record(log);
+  live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  // An hour after the daemon's start; the rod moves 12 % too far for 6 s.
+  constexpr std::int64_t kHour_s = 3600;
+  const auto hour = std::lround(static_cast<double>(kHour_s) / record.sample_time_s);
+  double y_m = record.y_m.front();
+  for (std::size_t k = 1; k < record.size(); ++k) {
+    y_m += (record.t_s[k] < 6.0 ? 1.12 : 1.0) * (record.y_m[k] - record.y_m[k - 1]);
+    running.add(hour + std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
+                record.u_V[k], y_m);
+  }
+  const live::ResidualFigures figures = running.figures();
+  ASSERT_EQ(figures.worst_variable, "time") << figures.worst;
+  EXPECT_THAT(figures.worst, testing::StartsWith("from 360"));
+  ASSERT_FALSE(figures.worst_spans.empty());
+  EXPECT_GE(figures.worst_spans.front().from_s, kHour_s);
+  EXPECT_LE(figures.worst_spans.back().to_s, kHour_s + 8);
+}
+
 TEST(OnlineResidual, SaysWhenTheRodDoesNotMove) {
   live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 1000; ++tick) running.add(tick, 0.005, 0.0, 0.3);

@@ -247,6 +247,45 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(LiveChannel, TheWorstRegionIsSaidInTimesOfTheSamples) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("live_worst_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string log = (folder / "log").string();
+  constexpr double kSwing_rad_per_s = 6.0;
+  {
+    lcm::LogFile file(log, "w");
+    for (int k = 0; k < 40 * 200; ++k) {  // the rod stands still from 35 to 38 s
+      const double t_s = k / 200.0;
+      const double moved_s = t_s < 35.0 ? t_s : std::max(35.0, t_s - 3.0);
+      spoolwatch::sample_t sample{};
+      sample.run_id = 1;
+      sample.seq = sample.tick = k;
+      sample.utc_us = static_cast<std::int64_t>((kBegin_s + t_s) * 1e6);
+      sample.sample_time_s = 1.0 / 200.0;
+      sample.y_m = 0.3 + 0.05 / kSwing_rad_per_s * (1.0 - std::cos(kSwing_rad_per_s * moved_s));
+      sample.u_applied_V = std::sin(kSwing_rad_per_s * t_s);
+      write(file, "LIVE_SAMPLE", sample);
+    }
+  }
+  Inboxes inboxes;
+  LiveChannel channel = channel_of(log, inboxes);
+  channel.watch_model(SPOOLWATCH_SOURCE_DIR "/config/models/velocity_servo.toml");
+  channel.open(1);
+  ordered_json worst;
+  for (int i = 0; i < 1500 && !worst.is_object(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const ordered_json status = inboxes.status();
+    if (status.contains("model") && status["model"].is_object()) worst = status["model"]["worst"];
+  }
+  ASSERT_TRUE(worst.is_object()) << inboxes.status();
+  ASSERT_FALSE(worst["spans"].empty());
+  EXPECT_NEAR(worst["spans"].front()[0].get<double>() - kBegin_s, 35.0, 1.0);
+  EXPECT_LE(worst["spans"].back()[1].get<double>() - kBegin_s, 40.0);
+  channel.end();
+  std::filesystem::remove_all(folder);
+}
+
 TEST(LiveChannel, PressuresAndRodsAreChannelsThatCanTrigger) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("live_columns_" + std::to_string(getpid()));

@@ -122,6 +122,13 @@ function Detectable({alarms}) {
     </section>`;
 }
 
+/// A time of the daemon's clock as the wall clock shows it.
+function where({where, spans}) {
+  if (!spans || spans.length === 0) return where;
+  return where.replace(/from [\d.]+ to [\d.]+ s\b/, 'from ' + clockOf(spans[0][0]) + ' to '
+                                                  + clockOf(spans[spans.length - 1][1]));
+}
+
 function Model({status, model}) {
   const m = status && status.model;
   if (!model) {
@@ -132,8 +139,10 @@ function Model({status, model}) {
     <section class="beside-model"><h2>Model beside the stand</h2>
       <p><b>${model}</b>${status && status.model_note ? ': ' + status.model_note : ''}</p>
       ${m && html`
-        <p>error ${m.rms}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor</p>
-        ${m.worst && html`<p>worst ${m.worst.where} (${m.worst.rms})</p>`}
+        <p>error ${m.rms}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor
+          <small> last 10 s</small></p>
+        ${m.worst && html`<p><i class="region"></i> worst ${where(m.worst)} (${m.worst.rms})
+          <small> last 30 s</small></p>`}
         ${m.note && html`<p class="hint">${m.note}</p>`}`}
     </section>`;
 }
@@ -155,9 +164,11 @@ export function Live({feed, link, state, openWorkbench}) {
   const now = useRef();
   const [chosen, choose] = useChosen();
   const [channels, setChannels] = useState([]);  // of the stream
-  const drawn = channels.filter((c) => chosen.includes(c.key));
+  // Without a model there is no error of it.
+  const drawn = channels.filter((c) => chosen.includes(c.key) && (c.key !== 'error' || state.model));
   const plots = JSON.stringify(specs(drawn));
-  now.current = {span, paused, view, capture: captured ? capture : null};
+  const worst = status && status.model && status.model.worst;
+  now.current = {span, paused, view, capture: captured ? capture : null, worst: (worst && worst.spans) || []};
   if (!kept.current) {
     kept.current = {ring: new Ring(), came: 0, aged: null, fresh: false, frozen: null,
                     after: 0, every: 1};
@@ -217,7 +228,6 @@ export function Live({feed, link, state, openWorkbench}) {
         drawCapture(capture, view);
         return;
       }
-      stack.bands = [];
       stack.mark = null;
       const {ring} = k;
       if (paused && !k.frozen && ring.length) k.frozen = ring.newest;
@@ -229,6 +239,7 @@ export function Live({feed, link, state, openWorkbench}) {
       const [from, to] = view || [newest - span, newest];
       const part = ring.part(from, to, keys);
       k.base = newest;
+      stack.bands = [{spans: now.current.worst.map((one) => one.map((t) => t - newest)), tone: 'region'}];
       stack.show({...part, t: part.t.map((v) => v - newest)}, from - newest, to - newest);
       element.current.dataset.points = part.t.length;
       if (time - told > 450) {
