@@ -4,6 +4,7 @@ nothing comes, and goes on by itself, with a gap, when the daemon is back.
 
   live.py --bin DIR --source DIR [--pictures DIR]      exit code 77: there is no Chromium
 """
+import json
 import os
 import subprocess
 import sys
@@ -111,9 +112,30 @@ def watch(args, folder):
             page.run("document.querySelectorAll('.alarms li.MAJOR').forEach((one) => one.querySelector('button').click())")
             page.wait("!document.querySelector('.alarms').innerText.includes('unacknowledged, MAJOR')")
 
+            # What is acknowledged is not acknowledged again; what is shelved says for how long.
+            page.wait("[...document.querySelectorAll('.alarms li')].some((one) => / acknowledged, /.test(one.innerText)"
+                      " && !one.innerText.includes('Acknowledge\\n'))")
+            shelved = page.run("(() => { const one = document.querySelector('.alarms li.MAJOR');"
+                               " [...one.querySelectorAll('button')].find((b) => b.innerText.startsWith('Shelve')).click();"
+                               " return one.querySelector('b').innerText; })()")
+            page.wait("/shelved, [0-9]+ min left/.test(document.querySelector('.alarms').innerText)")
+
+            # The values at a cursor that rests are those of the curves that move below it.
+            over = page.run("(() => { const r = document.querySelector('.u-over').getBoundingClientRect();"
+                            " return [r.left + r.width / 2, r.top + r.height / 2]; })()")
+            page.call("Input.dispatchMouseEvent", type="mouseMoved", x=over[0], y=over[1])
+            value = "[...document.querySelectorAll('.u-series .u-value')].map((v) => v.textContent).join()"
+            first = page.run(value)
+            expect(f"values at the cursor: {first}", any(one.strip("-.0123456789") == "" and one for one in first.split(",")))
+            page.wait(f"({value}) !== {json.dumps(first)}", 5)
+            page.call("Input.dispatchMouseEvent", type="mouseMoved", x=2, y=2)
+
             # Nothing comes: the page says so and since when; then it goes on by itself.
             daemon.kill()
             page.wait("document.querySelector('.live.stale')", 10)
+            page.wait("document.querySelector('.alarms').innerText.includes('control socket')")
+            expect("alarms as they were, the shelved one too", all(
+                text in page.run("document.querySelector('.alarms').innerText") for text in ("as they were", shelved)))
             expect("it says since when", page.run(AGE).startswith("no data since "))
             expect("the state is the last one known", page.run(STATE) == "was RUN")
             if args.pictures:

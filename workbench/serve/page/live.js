@@ -1,7 +1,7 @@
 // The running stand: motion, command, the model's error, estimates and alarms. It follows, it can be
 // paused, and it says since when nothing has come.
 import {html, useEffect, useRef, useState} from './preact.js';
-import {Alarms} from './alarms.js';
+import {AlarmCount, Alarms, standing} from './alarms.js';
 import {PlotStack} from './plots.js';
 import {Ring} from './ring.js';
 import {post} from './server.js';
@@ -78,7 +78,7 @@ const shown = (v) => {
 
 function Meters({meters, channels}) {
   return html`
-    <table class="meters"><thead><tr><th></th><th>min</th><th>max</th><th>peak</th><th>mean</th></tr></thead>
+    <table class="meters"><thead><tr><th>in the picture</th><th>min</th><th>max</th><th>peak</th><th>mean</th></tr></thead>
       <tbody>${channels.map(({key, words, unit}) => html`<tr key=${key}><td>${words}, ${unit}</td>
         ${['low', 'high', 'peak', 'mean'].map((what) => html`
           <td class="n">${shown(meters[key] && meters[key][what])}</td>`)}</tr>`)}</tbody></table>`;
@@ -151,6 +151,7 @@ export function Live({feed, link, state, openWorkbench}) {
   const element = useRef(), kept = useRef(null);
   const [status, setStatus] = useState(null);
   const [alarms, setAlarms] = useState(null);
+  const [known, setKnown] = useState(null);  // the newest alarms that are a list
   const [span, setSpan] = useState(10);
   const [paused, setPaused] = useState(false);
   const [view, setView] = useState(null);    // zoomed: it does not follow
@@ -196,7 +197,10 @@ export function Live({feed, link, state, openWorkbench}) {
         if (detail.channels) setChannels(detail.channels);
         k.aged = {s: detail.age_s, at: Date.now()};
       },
-      alarms: ({detail}) => setAlarms(detail),
+      alarms: ({detail}) => {
+        setAlarms(detail);
+        if (!detail.control && Array.isArray(detail.alarms)) setKnown(detail);
+      },
       capture: ({detail}) => setCapture(detail),
       watching: ({detail}) => { k.every = Math.ceil(detail / WINDOWS); },
     };
@@ -279,6 +283,7 @@ export function Live({feed, link, state, openWorkbench}) {
   };
   const stale = !link.alive || age.s === null || age.s > STALE_S;
   const health = (status && status.health) || {};
+  const alarmed = standing(alarms, known, status, stale);
   const ago = age.s === null ? 'no sample yet'
     : stale ? 'no data since ' + age.since.toTimeString().slice(0, 8)
             : 'newest sample ' + age.s.toFixed(1) + ' s old';
@@ -288,6 +293,7 @@ export function Live({feed, link, state, openWorkbench}) {
         <p class="row tools">
           <span class="state">${!status || !status.state ? 'no daemon heard' : (stale ? 'was ' : '') + status.state}</span>
           <span class=${'age' + (stale ? ' stale' : '')} role="status">${ago}</span>
+          <${AlarmCount} list=${alarmed.list} stale=${stale} />
           <button aria-pressed=${paused} onClick=${() => setPaused(!paused)}>
             ${paused ? 'Resume' : 'Pause'}</button>
           ${paused && html`<span class="hint">${held} samples since</span>`}
@@ -307,19 +313,22 @@ export function Live({feed, link, state, openWorkbench}) {
         ${saved && html`<p class="saved">saved as <b>${saved}</b>${' '}
           <button onClick=${open}>Open in the workbench</button>
           ${' '}<span class="warn">${refused}</span></p>`}
-        <div class="stack" ref=${element}></div>
-        <${Meters} meters=${meters} channels=${drawn} />
+        ${age.s === null && html`<p class="welcome">No daemon is heard. Its samples appear here as soon as
+          <code> spoolwatchd</code> runs with the LCM address and prefix of this server
+          (<code>--lcm-url</code>, <code>--prefix</code>).</p>`}
+        <div class=${'stack' + (age.s === null ? ' unheard' : '')} ref=${element}></div>
+        ${age.s !== null && html`<${Meters} meters=${meters} channels=${drawn} />`}
         <${Estimates} status=${status} />
       </div>
       <div class="side">
-        <section><h2>Loop</h2>
+        <${Alarms} alarms=${alarms} now=${alarmed} orders=${state.orders} stale=${stale} />
+        <section class="loop"><h2>Loop</h2>
           <p>${health.rig_id || 'no health message yet'}</p>
           ${health.rig_id && html`<p class="hint">lateness p99.9 ${shown(health.lateness_p999_us)} µs,
             overruns ${health.overruns}, dropped ${health.dropped_samples}</p>`}
           ${status && status.lost > 0 && html`<p class="warn">${status.lost} messages lost</p>`}
           ${status && status.notice && html`<p class="hint">${status.notice}</p>`}
         </section>
-        <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} stale=${stale} />
         <${Model} status=${status} model=${state.model} />
         <${Detectable} alarms=${stale ? null : alarms} />
       </div>

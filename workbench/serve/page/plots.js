@@ -92,8 +92,8 @@ export class PlotStack {
         width: element.clientWidth || 600, height: spec.height,
         scales: {x: {time: false}, y: {range: spec.range}},
         legend: {live: true},
-        cursor: {sync: {key}, drag: {x: true, y: false, setScale: false}, focus: {prox: 30}},
-        axes: [axis(last ? xLabel : '', {size: last ? 34 : 22, labelSize: last ? 16 : 0}),
+        cursor: {sync: {key}, drag: {x: true, y: false, setScale: false}},
+        axes: [axis(last ? xLabel : '', {size: 22, labelSize: last ? 16 : 0}),
                axis(spec.label)],
         series: [{label: 'time', value: (u, v) => (v == null ? '' : v.toFixed(3) + ' s')},
                  ...spec.series.map((s) => ({
@@ -170,6 +170,9 @@ export class PlotStack {
         });
         plot.setScale('x', {min: from, max: to});
       });
+      // What the cursor points to has moved.
+      const {left, top} = plot.cursor;
+      if (left >= 0) plot.setCursor({left, top}, true, false);
     });
   }
 

@@ -3,6 +3,11 @@ import {Stream} from './stream.js';
 
 let change = '';  // what every change must carry
 
+/// fetch(), whose own words for a server that is gone differ from browser to browser.
+const ask = (...request) => fetch(...request).catch(() => {
+  throw new Error('The server does not answer. Is spoolwatch serve running?');
+});
+
 async function answer(response) {
   const body = await response.json().catch(() => ({error: 'the answer makes no sense'}));
   if (!response.ok) throw new Error(body.error || 'refused: ' + response.status);
@@ -14,26 +19,26 @@ export async function enter() {
   const token = location.hash.slice(1);
   if (/^[0-9a-f]{64}$/.test(token)) {
     history.replaceState(null, '', '/');
-    await answer(await fetch('/api/login', {
+    await answer(await ask('/api/login', {
       method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({token})}));
   }
-  const state = await answer(await fetch('/api/state'));
+  const state = await answer(await ask('/api/state'));
   change = state.change;
   return state;
 }
 
 /// The kinds of models that can be made, with the questions of each.
-export async function kinds() { return answer(await fetch('/api/kinds')); }
+export async function kinds() { return answer(await ask('/api/kinds')); }
 
 export async function post(path, body = {}) {
-  return answer(await fetch('/api/' + path, {
+  return answer(await ask('/api/' + path, {
     method: 'POST',
     headers: {'Content-Type': 'application/json', 'X-Spoolwatch-Change': change},
     body: JSON.stringify(body)}));
 }
 
 export async function upload(file) {
-  return answer(await fetch('/api/upload?name=' + encodeURIComponent(file.name), {
+  return answer(await ask('/api/upload?name=' + encodeURIComponent(file.name), {
     method: 'POST',
     headers: {'Content-Type': 'application/octet-stream', 'X-Spoolwatch-Change': change},
     body: file}));
