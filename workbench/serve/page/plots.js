@@ -170,9 +170,11 @@ export class PlotStack {
         });
         plot.setScale('x', {min: from, max: to});
       });
-      // What the cursor points to has moved.
+      // What the cursor points to has moved; uPlot looks only whether another sample is there.
       const {left, top} = plot.cursor;
-      if (left >= 0) plot.setCursor({left, top}, true, false);
+      if (!(left >= 0)) return;
+      plot.setCursor({left: -10, top: -10}, false, false);
+      plot.setCursor({left, top}, true, false);
     });
   }
 
