@@ -162,7 +162,7 @@ def story(args, folder):
         page.wait("document.querySelector('.result ~ .result button[aria-label=\"try backlash\"]')")
         # The curves of the model before can be hidden, so that the axes fit those of the trial.
         off = "[...document.querySelectorAll('.u-series.u-off .u-label')].filter((l) => l.textContent === 'before').length"
-        expect("the model before is drawn", page.run(off) == 0)
+        page.wait(off + " === 0")
         page.click_text("Hide before")
         page.wait(off + " === 2")
         picture(page, "tried")

@@ -290,6 +290,8 @@ export function Live({feed, link, state, openWorkbench}) {
   return html`
     <main class=${'live' + (stale ? ' stale' : '')}>
       <div>
+        <p class="printed">${health.rig_id}, ${stale ? 'was ' : ''}${status && status.state}, newest sample
+          ${' '}${age.since && age.since.toLocaleString()}</p>
         <p class="row tools">
           <span class="state">${!status || !status.state ? 'no daemon heard' : (stale ? 'was ' : '') + status.state}</span>
           <span class=${'age' + (stale ? ' stale' : '')} role="status">${ago}</span>

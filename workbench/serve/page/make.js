@@ -32,7 +32,7 @@ export function MakeModel({act}) {
           <option value="">choose</option>
           ${(all || []).map((one) => html`<option value=${one.name}>${one.name}: ${one.what}</option>`)}
         </select></label>
-      ${kind && html`<form onSubmit=${make}>
+      ${kind && html`<p class="hint">${kind.what}</p><form onSubmit=${make}>
         ${kind.questions.map((q) => html`
           <label key=${q.flag}>${q.what} <code>--${q.flag}</code>
             <input id=${'new-' + q.flag} inputmode="decimal" required=${q.usual === null} title=${q.where}

@@ -329,6 +329,7 @@ export function Workbench({state, progress}) {
       <div class="middle">
         ${message && html`<p class="message" role="alert">${message}
           <button class="plain" aria-label="close" onClick=${() => say('')}>×</button></p>`}
+        <p class="printed">${state.record} against ${state.trial || state.model}</p>
         <${Welcome} state=${state} />
         <${Verdict} shown=${state.shown} trial=${state.trial} running=${state.running} act=${act}
                     selected=${plots.selected} select=${plots.select} />
