@@ -52,7 +52,8 @@ export function Result({result, run, running, record, narrow}) {
       <h2>${title(result)}</h2>
       ${result.interrupted && html`<p class="warn">Interrupted: the best so far.</p>`}
       <p class="words">${result.words}</p>
-      ${result.kind === 'fit' && html`<p class="hint">Of the blocks that were fitted; above are those of the whole record.</p>`}
+      ${result.kind === 'fit' && html`
+        <p class="hint">The error is that of the blocks that were fitted; beside the verdict is that of the whole record.</p>`}
       ${result.unsaved && html`<p class="warn">Its model waits to be written: ${result.unsaved}</p>`}
       ${(result.laws || []).map((law) => html`
         <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>
