@@ -118,6 +118,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
     }
   }
   choose_effects(request, prepared.problem.candidate_effects);
+  prepared.problem.effects_only = !request.only.empty();
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   prepared.options.threads = request.threads > 0 ? request.threads : processors;
   prepared.model_file = request.model;

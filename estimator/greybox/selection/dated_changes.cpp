@@ -20,7 +20,14 @@ void put_time_first(std::vector<Localisation>& where) {
 /// True where the changes found explain the record and leave clearly less than `before`.
 bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis& before,
                   Diagnosis& result) {
-  found.context.problem.candidate_effects.clear();  // none of them explains the record
+  const std::vector<std::string>& added = found.innovations.final.model.added;
+  const auto is_change = [](const std::string& name) { return name.starts_with("change."); };
+  if (std::all_of(added.begin(), added.end(), is_change)) {
+    found.context.problem.candidate_effects.clear();  // none of them explains the record
+  }
+  for (const std::string& name : added) {
+    if (is_change(name)) found.innovations.rivals[name] = {};  // these are the change's own
+  }
   Diagnosis changed = begun(before);
   conclude(found.context, found.context, first, found.innovations, changed);
   if (changed.verdict == Verdict::unexplained ||
@@ -28,8 +35,13 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
     return false;
   }
   changed.verdict = Verdict::changing;
-  std::erase_if(changed.missing,
-                [](const std::string& name) { return name.starts_with("change."); });
+  // an effect that changes is named with its change
+  std::erase_if(changed.missing, [&](const std::string& name) {
+    return is_change(name) || std::any_of(found.changes.begin(), found.changes.end(),
+                                          [&](const ParameterChange& change) {
+                                            return change.parameter.starts_with(name + ".");
+                                          });
+  });
   changed.changing = found.changes;
   changed.where = before.where;
   changed.where_is_whole = true;
@@ -38,16 +50,32 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   return true;
 }
 
+/// Changes beside an effect where that was taken for a change and explains as much.
+void prefer_effects(const SearchContext& context, const ModelStage& first, ChangesSought sought,
+                    FoundChanges& changes) {
+  if (!changes.explaining || context.cancelled()) return;
+  const std::optional<ModelStage> steady = steady_effect(first, *changes.explaining);
+  if (!steady) return;
+  const FoundChanges others = search_changes(context, *steady, sought);
+  if (others.explaining &&
+      penalised(others.explaining->innovations.final) <
+          penalised(changes.explaining->innovations.final) + 2.0 * kEvidence_nats) {
+    changes.explaining = others.explaining;
+  }
+}
+
 }  // namespace
 
-bool date_changes(const SearchContext& context, const ModelStage& first, Diagnosis& result,
-                  ChangesSought sought) {
+bool date_changes(const SearchContext& context, const ModelStage& first, const ModelStage& likely,
+                  Diagnosis& result, ChangesSought sought) {
   std::vector<ModelStage> bases{first};
-  const ModelStage& found = result.search.final;
-  if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
+  for (const ModelStage& found : {result.search.final, likely}) {
+    if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
+  }
   std::optional<ModelStage> beside;
   for (const ModelStage& base : bases) {
     FoundChanges changes = search_changes(context, base, sought);
+    prefer_effects(context, first, sought, changes);
     if (changes.explaining && take_changes(first, *changes.explaining, result, result)) return true;
     if (base.added.empty() && changes.likeliest) beside = effects_beside(first, *changes.likeliest);
   }

@@ -6,9 +6,10 @@
 
 namespace estimator::greybox::selection {
 
-/// Takes changes where no effect explains the record and they do. False: `result` is as before.
+/// Takes changes where no effect explains the record and they do, alone or beside effects. False:
+/// `result` is as before. `likely`: a model whose effects were dropped; without effects: none was.
 [[nodiscard]] bool date_changes(const SearchContext& context, const ModelStage& first,
-                                Diagnosis& result,
+                                const ModelStage& likely, Diagnosis& result,
                                 ChangesSought sought = ChangesSought::before_laws);
 
 }  // namespace estimator::greybox::selection

@@ -1,7 +1,9 @@
 #include "estimator/greybox/selection/effects_beside_change.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "estimator/greybox/selection/parameter_subset.h"
 
@@ -15,6 +17,9 @@ constexpr double kBelieved = 2.0;
 /// parameter.
 constexpr double kLeft = 0.5;
 
+/// Share of its value by which an effect changes at least, to be more than an effect.
+constexpr double kSteady_ratio = 0.2;
+
 bool known(const ModelStage& first, const FreeParameter& parameter) {
   return std::any_of(first.fitted.parameters.begin(), first.fitted.parameters.end(),
                      [&](const FreeParameter& own) { return own.name == parameter.name; });
@@ -25,6 +30,20 @@ bool belongs_to_change(const ChangeSearch& change, const std::string& effect) {
   return std::any_of(change.changes.begin(), change.changes.end(), [&](const ParameterChange& one) {
     return one.parameter.starts_with(effect + ".");
   });
+}
+
+/// The fitted parameters of the model as given and of effects, those of changes left out.
+ModelStage with_effects_alone(const ModelStage& first, const FitSummary& fitted,
+                              const std::vector<std::string>& effects) {
+  ModelStage stage;
+  stage.added = effects;
+  const ParameterSubset own = subset(fitted, [&](const FreeParameter& p) {
+    return known(first, p) || std::any_of(effects.begin(), effects.end(),
+                                          [&](const auto& name) { return belongs_to(p, name); });
+  });
+  stage.fitted.parameters = own.parameters;
+  stage.fitted.theta = own.start;
+  return stage;
 }
 
 }  // namespace
@@ -47,19 +66,26 @@ std::optional<ModelStage> effects_beside(const ModelStage& first, const ChangeSe
   limits.most_effects = kMostBeside;
   const InnovationSearch found = search_innovations(context, base, {}, limits);
   const ModelStage& with = found.final.model;
-  if (context.cancelled() || with.added.empty() ||
-      !(found.curve_nats < kLeft * alone.curve_nats)) {
+  if (context.cancelled() || with.added.empty() || !(found.curve_nats < kLeft * alone.curve_nats)) {
     return {};
   }
-  ModelStage effects;
-  effects.added = with.added;
-  const ParameterSubset own = subset(with.fitted, [&](const FreeParameter& p) {
-    return known(first, p) || std::any_of(with.added.begin(), with.added.end(),
-                                          [&](const auto& name) { return belongs_to(p, name); });
-  });
-  effects.fitted.parameters = own.parameters;
-  effects.fitted.theta = own.start;
-  return effects;
+  return with_effects_alone(first, with.fitted, with.added);
+}
+
+std::optional<ModelStage> steady_effect(const ModelStage& first, const ChangeSearch& change) {
+  for (const ParameterChange& one : change.changes) {
+    const double size = std::max(std::abs(one.from), std::abs(one.to));
+    if (std::abs(one.to - one.from) > kSteady_ratio * size) continue;
+    const FitSummary& fitted = change.innovations.final.model.fitted;
+    const auto own = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
+                                  [&](const FreeParameter& p) { return p.name == one.parameter; });
+    if (own == fitted.parameters.end() || known(first, *own)) continue;
+    std::vector<std::string> effects = change.innovations.final.model.added;
+    std::erase_if(effects, [](const std::string& name) { return name.starts_with("change."); });
+    effects.push_back(effect_of(*own));
+    return with_effects_alone(first, fitted, effects);
+  }
+  return {};
 }
 
 }  // namespace estimator::greybox::selection

@@ -136,6 +136,7 @@ bool learn_law_early(const SearchContext& context, const ModelStage& first,
 
 bool prefer_law(const SearchContext& context, const ModelStage& first,
                 const InnovationSearch& innovations, Diagnosis& result) {
+  if (context.problem.effects_only) return false;
   const InnovationStage& named = innovations.final;
   const std::vector<std::string>& added = named.model.added;
   // several effects may stand in for one law, at any site

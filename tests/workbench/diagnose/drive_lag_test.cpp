@@ -16,7 +16,7 @@ namespace {
 
 using diagnose_test::said;
 
-selection::Diagnosis diagnosed(const std::string& hidden) {
+selection::Diagnosis diagnosed_lag(const std::string& hidden) {
   const truth::Record record = truth::simulate(
       truth::parse_case("rig=linear_axis,motion=multisine,length_s=12," + hidden, 41));
   const auto model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
@@ -27,7 +27,7 @@ selection::Diagnosis diagnosed(const std::string& hidden) {
 }
 
 TEST(HiddenDriveLag, IsNamedWithItsTimeConstant) {
-  const selection::Diagnosis d = diagnosed("drive_lag.lag_s=0.006");
+  const selection::Diagnosis d = diagnosed_lag("drive_lag.lag_s=0.006");
   EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
   EXPECT_THAT(d.missing, testing::ElementsAre("drive_lag")) << said(d);
   for (const selection::ParameterValue& p : d.parameters) {
@@ -37,7 +37,7 @@ TEST(HiddenDriveLag, IsNamedWithItsTimeConstant) {
 }
 
 TEST(HiddenDriveLag, IsNotNamedWhereTheCommandActsLate) {
-  const selection::Diagnosis d = diagnosed("transport_delay.delay_s=0.006");
+  const selection::Diagnosis d = diagnosed_lag("transport_delay.delay_s=0.006");
   EXPECT_THAT(d.missing, testing::ElementsAre("transport_delay")) << said(d);
 }
 

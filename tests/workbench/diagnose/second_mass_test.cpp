@@ -26,7 +26,7 @@ plant_sim::ModelFile rigid() {
   return model;
 }
 
-selection::Diagnosis diagnosed(const two_masses::Rig& rig) {
+selection::Diagnosis diagnosed_masses(const two_masses::Rig& rig) {
   config::record::Record record = two_masses::record(rig);
   record.name = "two masses";
   record.sample_time_s = 1.0 / rig.sample_rate_Hz;
@@ -44,7 +44,7 @@ const selection::ParameterValue& value(const selection::Diagnosis& d, const std:
 }
 
 void expect_named(const two_masses::Rig& rig) {
-  const selection::Diagnosis d = diagnosed(rig);
+  const selection::Diagnosis d = diagnosed_masses(rig);
   EXPECT_THAT(d.missing, testing::ElementsAre("second_mass")) << said(d);
   EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
   const auto near = [&](const std::string& name, double truth) {
@@ -67,13 +67,13 @@ TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt8HzAnd500HzSampling) {
 }
 
 TEST(HiddenSecondMass, IsNotFoundInARigidAxisNorInADelayedOneNorInASpring) {
-  const selection::Diagnosis healthy = diagnosed({.mass_ratio = 0.0, .seed = 5});
+  const selection::Diagnosis healthy = diagnosed_masses({.mass_ratio = 0.0, .seed = 5});
   EXPECT_THAT(healthy.missing, testing::IsEmpty()) << said(healthy);
   const selection::Diagnosis delayed =
-      diagnosed({.mass_ratio = 0.0, .delay_samples = 4, .seed = 6});
+      diagnosed_masses({.mass_ratio = 0.0, .delay_samples = 4, .seed = 6});
   EXPECT_THAT(delayed.missing, testing::ElementsAre("transport_delay")) << said(delayed);
   const selection::Diagnosis sprung =
-      diagnosed({.mass_ratio = 0.0, .stiffness_N_per_m = 1500.0, .seed = 7});
+      diagnosed_masses({.mass_ratio = 0.0, .stiffness_N_per_m = 1500.0, .seed = 7});
   EXPECT_THAT(sprung.missing, testing::Contains("load_spring")) << said(sprung);
   EXPECT_THAT(sprung.missing, testing::Not(testing::Contains("second_mass"))) << said(sprung);
 }

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/selection/change_scores.h"
@@ -17,6 +18,7 @@ using diagnose_test::context_of;
 using diagnose_test::kServoGain;
 using diagnose_test::servo_context;
 using diagnose_test::with_offset;
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -106,6 +108,43 @@ TEST(Changes, AnOffsetThatStepsLeavesASecondChangeToBeFound) {
   EXPECT_EQ(gain.parameter, "gain_mps_per_V");
   EXPECT_NEAR(gain.at_s, 14.0, 0.05);
   EXPECT_NEAR(gain.to / gain.from, 1.05, 1e-3);
+}
+
+// Each bends what is found of the other: alone, neither leaves nothing.
+TEST(Changes, AnEffectIsNamedBesideANullThatDrifts) {
+  const SearchContext context = servo_context({.rate_mps = [](double u_V, double, double t_s) {
+    const double open_V = u_V - 0.1 + 0.01 * t_s;
+    const double past_V = std::max(0.0, std::abs(open_V) - 0.08);
+    return kServoGain * std::copysign(past_V, open_V);
+  }});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  EXPECT_THAT(d.missing, ElementsAre("deadband"));
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "null_bias.offset_V");
+  EXPECT_NEAR(d.changing.front().from, -0.1, 1e-3);
+  EXPECT_NEAR(d.changing.front().to, 0.1, 1e-3);
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+}
+
+TEST(Changes, AnOffsetBesideAGainThatStepsIsAnEffect) {
+  const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
+                                               [](double) { return 0.1; });
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  EXPECT_THAT(d.missing, ElementsAre("null_bias"));
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "gain_mps_per_V");
+}
+
+TEST(Changes, AreNotSoughtWhereOnlyEffectsAre) {
+  SearchContext context =
+      changing_servo([](double t_s) { return t_s < 12.3 ? 1.0 : 1.03; }, nothing);
+  context.problem.effects_only = true;
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_THAT(d.changing, IsEmpty());
+  EXPECT_THAT(d.laws, IsEmpty());
 }
 
 TEST(Changes, AParameterThatTheFileChangesGetsNoSecondChange) {
