@@ -111,7 +111,7 @@ std::string doubt_words(selection::Doubt doubt, bool several) {
       return several ? "the size of each is within its error" : "its size is within its error";
     case selection::Doubt::chance:
       return std::string("what ") + (several ? "each" : "it") +
-             " gains is so uneven over the record that it may be chance";
+             " gains is so little, or so uneven over the record, that it may be chance";
     case selection::Doubt::rivals:
       return "others do as well";
     case selection::Doubt::remainder:

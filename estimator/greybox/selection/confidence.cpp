@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kStandardErrors = 2.0;
 constexpr double kMostOfRemainder = 0.5;
+/// Probability that the best of all candidates gains by chance as much as an effect beside others,
+/// above which this is not established.
+constexpr double kChanceOfBest = 0.01;
 /// Probability of an effect's gain by chance above which it is not established.
 constexpr double kLikelyChance = 0.05;
 /// Squared error that an effect explains over that which remains, above which it is no stand-in.
@@ -135,8 +138,13 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;
 }
 
-/// Probability that what the effect gained, when it was taken last, is chance; NaN: not known.
-double chance_of(const StructureSearch& search, const std::string& effect) {
+struct Chance {
+  double p_value = std::nan("");        ///< that what the effect gained is chance; NaN: not known
+  double p_best_of_all = std::nan("");  ///< that the best of all that were tried gains as much
+};
+
+/// For what the effect gained when it was taken last.
+Chance chance_of(const StructureSearch& search, const std::string& effect) {
   const auto has = [&](const std::vector<std::string>& effects) {
     return std::find(effects.begin(), effects.end(), effect) != effects.end();
   };
@@ -146,9 +154,25 @@ double chance_of(const StructureSearch& search, const std::string& effect) {
         std::find_if(round->candidates.begin(), round->candidates.end(),
                      [&](const auto& one) { return one.fitted_at_all && has(one.effects); });
     // 1: too few blocks of held-out data to say
-    if (own != round->candidates.end()) return own->p_value < 1.0 ? own->p_value : std::nan("");
+    if (own == round->candidates.end()) continue;
+    if (!(own->p_value < 1.0)) return {};
+    return {own->p_value, own->p_value * static_cast<double>(round->candidates.size())};
   }
-  return std::nan("");
+  return {};
+}
+
+/// True for an effect beside others that removes less than the noise, where the best of all that
+/// were tried may do so by chance.
+bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect) {
+  if (diagnosis.by_innovations || diagnosis.missing.size() < 2) return false;
+  for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
+    if (diagnosis.steps[i].added.find(effect) == std::string::npos) continue;
+    const double removed_m2 = std::pow(diagnosis.steps[i - 1].validation_rms_m, 2) -
+                              std::pow(diagnosis.steps[i].validation_rms_m, 2);
+    return removed_m2 < std::pow(diagnosis.noise_floor_m, 2) &&
+           chance_of(diagnosis.search, effect).p_best_of_all > kChanceOfBest;
+  }
+  return false;
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
@@ -158,7 +182,7 @@ std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::s
   }
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
   if (is_beyond_doubt(diagnosis, effect)) return {};
-  if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect) > kLikelyChance) {
+  if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect).p_value > kLikelyChance) {
     return Doubt::chance;
   }
   if (likely_ratio(diagnosis, effect) < kClearOfRemainder &&
@@ -203,6 +227,9 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
+    if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
+      doubt = Doubt::chance;
+    }
     // one of several that gains little more than the curves that noise allows
     if (!doubt && !error_remains && diagnosis.missing.size() >= kStandIn &&
         likely_ratio(diagnosis, effect) < kClearOfRemainder && diagnosis.gains_nats.count(effect)) {

@@ -234,7 +234,7 @@ std::vector<std::string> Diagnosis::established() const {
 }
 
 bool Diagnosis::rests_on_one_of(const std::vector<std::string>& names) const {
-  if (verdict != Verdict::unexplained) return true;
+  if (verdict != Verdict::unexplained && verdict != Verdict::missing) return true;
   const std::vector<std::string> sure = established();
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     return std::find(sure.begin(), sure.end(), name) != sure.end();

@@ -62,6 +62,33 @@ TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
 }
 
+// The best of 40 gains with p 0.0005 once in 50 healthy records.
+TEST(Confidence, TheBestOfManyMayGainALittleByChance) {
+  Diagnosis d;
+  d.verdict = Verdict::missing;
+  d.missing = {"friction", "external_leakage"};
+  d.parameters = {{"friction.coulomb_N", 200.0, 5.0, false},
+                  {"external_leakage.conductance_m3ps_per_Pa", 1e-12, 2e-13, false}};
+  d.noise_floor_m = 2e-6;
+  d.rms_before_m = 2.5e-5;
+  d.rms_after_m = 2.07e-6;
+  d.steps = {{"", 2.5e-5}, {"friction", 2.15e-6}, {"external_leakage", 2.07e-6}};
+  std::vector<Candidate> all(40);
+  all[3].effects = {"external_leakage"};
+  all[3].fitted_at_all = true;
+  all[3].p_value = 0.0005;
+  d.search.rounds = {Round{{}, all}};
+  EXPECT_THAT(named(d), ElementsAre("external_leakage chance"));
+  d.search.rounds[0].candidates[3].p_value = 0.0001;
+  EXPECT_THAT(named(d), IsEmpty());
+  d.search.rounds[0].candidates[3].p_value = 0.0005;
+  d.search.rounds[0].candidates.resize(10);
+  EXPECT_THAT(named(d), IsEmpty());
+  d.search.rounds[0].candidates = all;
+  d.steps[1].validation_rms_m = 4e-6;  // it removes more than the noise
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, WhatDriftsIsNoOffset) {
   Diagnosis d;
   d.verdict = Verdict::unexplained;
