@@ -32,7 +32,7 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
     column.numbers = form.kinds[i] == FieldKind::number ||
                      (form.kinds[i] == FieldKind::missing && !column.header.empty());
     column.clock = form.kinds[i] == FieldKind::clock;
-    column.setting = form.cell_units[i].doubtful();
+    column.setting = form.cell_units[i].doubtful() && form.cell_units[i].glued();
     column.sample = form.head[i];
     std::erase_if(column.sample, [](double value) { return std::isnan(value); });
     head.columns.push_back(std::move(column));

@@ -116,7 +116,9 @@ PlainColumn column_of(const std::string& name, const std::string& unit_beside,
   if (named.unit.known() && !same_unit(named.unit, unit)) {
     // "p_A" of another dimension is a port: what stands beside the name says more
     const bool further = main_of(own) == nullptr && !is_time(own);
-    if (further && !apart && named.unit.si != unit.si) return with(name, unit);
+    const std::string& letter = named.unit.text;
+    const bool port = letter == "A" || letter == "V" || letter == "N";
+    if (further && !apart && port && named.unit.si != unit.si) return with(name, unit);
     throw bad_data(where,
                    "column " + name + " names two units, " + named.unit.text + " and " + unit.text,
                    one_unit_or_map(name, unit.text));

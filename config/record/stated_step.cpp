@@ -45,10 +45,10 @@ double step_in(std::string_view field, Stated stated, UnitText unit, char decima
   if (cell) unit = cell->unit;
   double value = 0.0;
   if (!parse_number(cell ? cell->number : field, decimal, value) || !(value > 0.0)) return 0.0;
-  if (unit.si == "Hz" || (!unit.known() && stated == Stated::rate)) {
+  if (unit.si == "Hz" || (unit.text.empty() && stated == Stated::rate)) {
     return 1.0 / (value * unit.factor);
   }
-  return unit.si == "s" || !unit.known() ? value * unit.factor : 0.0;
+  return unit.si == "s" || unit.text.empty() ? value * unit.factor : 0.0;
 }
 
 }  // namespace

@@ -273,9 +273,24 @@ class FormFinder {
   }
 
   /// Refuses cells of one column with two units, or with another than the header's.
+  void require_unit_of_gaps(std::size_t c) const {
+    const CellUnits& cells = form_.cell_units[c];
+    UnitText own = cells.unit();
+    if (!cells.any() && !form_.names.empty())
+      own = column_header(form_.names, c, cells.gaps()).unit;
+    if (!cells.any() && !own.known() && !form_.units.empty()) own = parse_unit(form_.units[c]);
+    if (own.text.empty() || own.si == "1" || same_unit(own, cells.gaps())) return;
+    throw bad_data(
+        name_,
+        column_words(c) + ": a gap is in " + cells.gaps().text + ", the column in " + own.text,
+        kOneUnit);
+  }
+
   void require_one_unit(std::size_t c) const {
     const CellUnits& cells = form_.cell_units[c];
-    if (form_.kinds[c] != FieldKind::number || !cells.any()) return;
+    if (form_.kinds[c] != FieldKind::number) return;
+    if (cells.gaps().known()) require_unit_of_gaps(c);
+    if (!cells.any()) return;
     const auto refuse = [&](std::size_t line, const std::string& what) {
       throw bad_data(name_ + ":" + std::to_string(line), column_words(c) + ": " + what, kOneUnit);
     };

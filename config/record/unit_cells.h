@@ -59,6 +59,8 @@ class CellUnits {
   [[nodiscard]] bool words() const { return words_ > 0; }
 
   [[nodiscard]] const UnitText& unit() const { return unit_; }
+  /// Unit of the first gap that has one.
+  [[nodiscard]] const UnitText& gaps() const { return gaps_; }
   [[nodiscard]] const std::string& first() const { return first_; }
   /// Line of the first cell with a number, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }

@@ -72,7 +72,10 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   add_reading(command, request->reading);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
   add_split(command, request->fit)->excludes(holdout);
-  command.add_option("--only", request->only, "name[,name...]: try these effects alone")
+  command
+      .add_option("--only", request->only,
+                  "name[,name...]: try these effects alone, no laws and no changes in time or "
+                  "between records")
       ->delimiter(',')
       ->allow_extra_args(false);
   command.add_option("--without", request->without, "name[,name...]: do not try these effects")

@@ -8,8 +8,12 @@
 namespace workbench::present {
 namespace {
 
-/// Bounds are round numbers, or a record's extremes, where digits matter little.
+constexpr double kLongAgo_s = 1000.0;
+
+/// Bounds are round numbers, or a record's extremes, where digits matter little but those of a late
+/// time.
 std::string bound(double value, const DisplayUnit& unit) {
+  if (unit.text == "s" && std::abs(value) >= kLongAgo_s) return fmt::format("{:.1f}", value);
   return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
 }
 

@@ -22,6 +22,8 @@ constexpr double kChangeOfEffect = 0.05;
 constexpr double kScanned_s = 1.0;
 constexpr double kScanStep = 4.0;
 constexpr int kScans = 3;
+/// Share of the record at its ends in which a step is none.
+constexpr double kEnds = 0.01;
 /// Time constants after which an exponential has settled.
 constexpr double kSettledAfter = 3.0;
 
@@ -144,6 +146,14 @@ void take(const ChangeProposal& taken, const InnovationStage& fitted,
   search.context = taken.context;
 }
 
+/// True for a step so near an end of the record that hardly anything is left on its other side: the
+/// parameter is another throughout.
+bool at_an_end(const Dataset& record, const ParameterChange& change) {
+  if (change.kind != ChangeKind::step) return false;
+  const double margin_s = kEnds * (record.t_s.back() - record.t_s.front());
+  return change.at_s < record.t_s.front() + margin_s || change.at_s > record.t_s.back() - margin_s;
+}
+
 /// True for an exponential that has not settled at the end of the record.
 bool ends_beyond(const Dataset& record, const ChangeProposal& change,
                  const InnovationStage& fitted) {
@@ -252,7 +262,11 @@ FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
       best = one;
     }
   }
-  if (!best->innovations.physics_missing()) result.explaining = std::move(best);
+  const Dataset& record = plain.problem.data.records.front();
+  const bool dated =
+      std::none_of(best->changes.begin(), best->changes.end(),
+                   [&](const ParameterChange& change) { return at_an_end(record, change); });
+  if (dated && !best->innovations.physics_missing()) result.explaining = std::move(best);
   return result;
 }
 

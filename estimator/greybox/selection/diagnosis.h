@@ -102,8 +102,8 @@ struct Diagnosis {
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
-  /// True where the answer rests on one of the names: an unexplained record rests on what is
-  /// established alone.
+  /// True where the answer rests on one of the names: verdicts missing and unexplained rest on what
+  /// is established alone.
   [[nodiscard]] bool rests_on_one_of(const std::vector<std::string>& names) const;
   /// True where another plant without effects leaves clearly less than the better model.
   [[nodiscard]] bool fits_another_plant() const {

@@ -25,7 +25,7 @@ bool known(const ModelStage& first, const FreeParameter& parameter) {
                      [&](const FreeParameter& own) { return own.name == parameter.name; });
 }
 
-/// Parameters of an effect that the model as given does not have and that changes.
+/// True for an effect whose parameter changes.
 bool belongs_to_change(const ChangeSearch& change, const std::string& effect) {
   return std::any_of(change.changes.begin(), change.changes.end(), [&](const ParameterChange& one) {
     return one.parameter.starts_with(effect + ".");
@@ -82,6 +82,7 @@ std::optional<ModelStage> steady_effect(const ModelStage& first, const ChangeSea
     if (own == fitted.parameters.end() || known(first, *own)) continue;
     std::vector<std::string> effects = change.innovations.final.model.added;
     std::erase_if(effects, [](const std::string& name) { return name.starts_with("change."); });
+    if (std::find(effects.begin(), effects.end(), effect_of(*own)) != effects.end()) continue;
     effects.push_back(effect_of(*own));
     return with_effects_alone(first, fitted, effects);
   }

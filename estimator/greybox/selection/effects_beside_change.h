@@ -8,10 +8,10 @@
 
 namespace estimator::greybox::selection {
 
-/// The effects that, with `change` in the model, leave no physics unexplained, fitted beside it;
-/// the stage is returned without the change, which is to be sought anew from there. None where the
-/// change leaves nothing, or has explained too little to be believed while effects are missing.
-/// `first`: the model as given.
+/// The effects that, with `change` in the model, at least halve the curve that it leaves, fitted
+/// beside it; the stage is returned without the change, which is to be sought anew from there. None
+/// where the change leaves nothing, or has explained too little to be believed while effects are
+/// missing. `first`: the model as given.
 [[nodiscard]] std::optional<ModelStage> effects_beside(const ModelStage& first,
                                                        const ChangeSearch& change);
 

@@ -158,5 +158,34 @@ TEST(FurtherColumns, APositionAtRestIsAPosition) {
   }
 }
 
+TEST(FurtherColumns, OfTwoUnitsAreRefusedUnlessTheEndingIsAPort) {
+  for (const char* name : {"p_bar", "x_mm", "supply_pressure_bar"}) {
+    const std::string unit = std::string(name) == "x_mm" ? "bar" : "mm";
+    const std::string text =
+        "t_s,u_V,y_m," + std::string(name) + "\ns,V,m," + unit + "\n" + rows_with("3");
+    expect_bad(text, ":1", "names two units");
+  }
+}
+
+// A file that begins at rest is no other than one that does not.
+TEST(FurtherColumns, ACommandAtRestStaysARivalOfTheCommand) {
+  for (const char* first : {"2.5000 V", "2.4000 V"}) {
+    std::string text = "Time [s],Valve command,Drive current [A],Position [m]\n";
+    for (int k = 0; k < 200; ++k) {
+      const std::string command =
+          k < 100 ? (k % 2 == 0 ? "2.5000 V" : first) : std::to_string(0.01 * k) + " V";
+      text += std::to_string(0.005 * k) + "," + command + ",1." + std::to_string(k) + ",0.1" +
+              std::to_string(k) + "\n";
+    }
+    expect_bad(text, ":1", "the command may be");
+  }
+}
+
+TEST(FurtherColumns, AGapInAnotherUnitIsRefused) {
+  std::string text = "Time [s],Command [V],Position [m],p [Pa]\n";
+  text += "0,1,0.1,50\n0.005,2,0.2,NaN bar\n0.01,3,0.3,52\n";
+  expect_bad(text, "", "a gap is in bar, the column in Pa");
+}
+
 }  // namespace
 }  // namespace config::record

@@ -57,10 +57,10 @@ TEST(EffectsBesideChange, AnEffectThatHardlyChangesIsSteady) {
   const SearchContext context = growing_servo(0.0, 0.3);
   const ModelStage first = first_stage(context);
   ChangeSearch search = search_changes(context, first).explaining.value();
-  ParameterChange* const offset = &*std::find_if(
+  const auto offset = std::find_if(
       search.changes.begin(), search.changes.end(),
       [](const ParameterChange& one) { return one.parameter == "null_bias.offset_V"; });
-  ASSERT_NE(offset, &*search.changes.end());
+  ASSERT_NE(offset, search.changes.end());
   offset->from = 0.3;
   offset->to = 0.29;
   const std::optional<ModelStage> steady = steady_effect(first, search);
