@@ -7,6 +7,7 @@
 #include "config/record/clock_text.h"
 #include "config/record/layout.h"
 #include "config/record/text_fields.h"
+#include "config/record/unit_cells.h"
 
 namespace config::record {
 namespace {
@@ -278,6 +279,7 @@ double RowReader::setting_in(std::string_view text, std::size_t column) {
   try {
     return number_in(text, column);
   } catch (const schema::DataError&) {
+    if (unit_cell(text)) throw;  // a number in another unit is no word
     left_out_at_[column] = line_;
     actions_[column] = Action::skip;
     return std::numeric_limits<double>::quiet_NaN();

@@ -167,6 +167,14 @@ TEST(FurtherColumns, OfTwoUnitsAreRefusedUnlessTheEndingIsAPort) {
   }
 }
 
+TEST(FurtherColumns, ASettingThatTurnsToAnotherUnitFarBelowIsRefused) {
+  std::string text = "t_s,u_V,y_m,supply\n";
+  for (int k = 0; k < 400; ++k) {
+    text += std::to_string(0.005 * k) + ",1.5,0.25," + (k < 350 ? "50 bar" : "5 MPa") + "\n";
+  }
+  expect_bad(text, ":352", "is in MPa");
+}
+
 // A file that begins at rest is no other than one that does not.
 TEST(FurtherColumns, ACommandAtRestStaysARivalOfTheCommand) {
   for (const char* first : {"2.5000 V", "2.4000 V"}) {
