@@ -36,9 +36,9 @@ struct DiagnosisProblem {
   plant_sim::ModelFile model;
   FitDataset data;
   std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
-  bool effects_only = false;  ///< neither laws nor changes are sought
-  std::vector<FreeParameter> plant_parameters;  ///< plant and present effects
-  Eigen::Index trial_sizes = kTrialSizes;       ///< fewer where they fit the rig
+  bool effects_only = false;                             ///< neither laws nor changes are sought
+  std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
+  Eigen::Index trial_sizes = kTrialSizes;                ///< fewer where they fit the rig
   double interpolated_nats = 0.0;  ///< gain of interpolating the command, which is not exact
 };
 
