@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t kMostBeside = 2;
 /// Least gain of the change, in those of the largest curve that it leaves.
 constexpr double kBelieved = 2.0;
+/// Share of the held-out error that it leaves at most: a search beside it takes as long as the
+/// first.
+constexpr double kMostLeft = 0.5;
 /// Share of that curve that effects may leave: the change may have stood for one of another
 /// parameter.
 constexpr double kLeft = 0.5;
@@ -55,6 +58,8 @@ std::optional<ModelStage> effects_beside(const ModelStage& first, const ChangeSe
       !(gained_nats > kBelieved * alone.curve_nats)) {
     return {};
   }
+  const double left_m = simulated(change.context, alone.final.model.fitted).validation_rms_m;
+  if (!(left_m < kMostLeft * first.fitted.validation_rms_m)) return {};
   // the change is the plant's as long as effects are sought
   SearchContext context = change.context;
   std::erase_if(context.problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
