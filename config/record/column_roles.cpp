@@ -305,7 +305,7 @@ class Understanding {
   std::array<std::optional<std::size_t>, 3> guess_;
   std::vector<Channel> mapped_further_;
   std::set<std::size_t> taken_;
-  std::set<std::size_t> stated_;  ///< of which an entry states the unit
+  std::set<std::size_t> stated_;  ///< columns whose unit an entry states
   std::vector<std::string> problems_;
   bool has_rate_ = false;
   bool position_optional_ = false;

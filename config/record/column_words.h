@@ -49,7 +49,7 @@ struct ReadColumn {
 [[nodiscard]] bool has_stem_of(Role role, const ReadColumn& column);
 /// True for the name of a set point.
 [[nodiscard]] bool names_reference(std::string_view name);
-/// Likewise.
+/// True for a column whose name is that of a set point.
 [[nodiscard]] bool is_reference(const ReadColumn& column);
 /// True where no word speaks of a set point or another quantity.
 [[nodiscard]] bool is_plain(const ReadColumn& column);

@@ -8,8 +8,8 @@
 namespace config::record {
 
 /// True where the fields are ranges and numbers, most of them ranges where a number is the first,
-/// or where a first word says
-/// what the numbers behind it limit or scale. Empty fields count for nothing.
+/// or where a first word says what the numbers behind it limit or scale. Empty fields count for
+/// nothing.
 [[nodiscard]] bool is_limit_line(const std::vector<std::string>& fields, char decimal);
 
 }  // namespace config::record

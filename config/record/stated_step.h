@@ -9,8 +9,8 @@
 
 namespace config::record {
 
-/// The period, s, in the first `end` lines; 0: none. Good enough for a proposal: no more is known
-/// of what the words mean.
+/// The period, s, in the first `end` lines; 0: none. It serves a proposal: the words may mean
+/// another quantity.
 [[nodiscard]] double stated_step_s(const std::vector<TextLine>& lines, std::size_t end,
                                    const TextDialect& dialect);
 

@@ -33,7 +33,7 @@ struct HeaderText {
 /// "Position mm", "position_mm", "Position_mm_" (as MATLAB renames "Position (mm)").
 [[nodiscard]] HeaderText parse_header(std::string_view header);
 
-/// What is allowed where two units are named for a column, for messages.
+/// The allowed values, for messages, where two units are named for a column.
 [[nodiscard]] std::string one_unit_or_map(const std::string& column, const std::string& unit);
 
 /// Names alike but for case, blanks and punctuation are equal: "Valve cmd" and "valve_cmd".

@@ -29,7 +29,7 @@ struct StepWords {
 /// The errors below which a model of the command cannot come, the largest first.
 [[nodiscard]] std::vector<StepWords> floor_steps(const selection::Diagnosis& d);
 
-/// Without its folder.
+/// The path without its folders.
 [[nodiscard]] std::string file_name(const std::string& file);
 
 /// True when a parameter belongs to an effect that was found missing.

@@ -1,11 +1,11 @@
 #include "workbench/serve/jobs.h"
 
-#include <filesystem>
 #include <new>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/words.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/printed_axis.h"
 #include "workbench/present/text.h"
@@ -15,10 +15,6 @@ namespace workbench::serve {
 namespace {
 
 namespace selection = estimator::greybox::selection;
-
-std::string base_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
 
 }  // namespace
 
@@ -78,8 +74,8 @@ bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const
             diagnose::run(prepared, [this] { return cancelled_.load(); });
         JobResult result{"", "", "", "", request.command, summary_of(report)};
         result.summary["only"] = request.only;
-        result.summary["model"] = base_name(request.model);
-        result.summary["record"] = base_name(request.records.front());
+        result.summary["model"] = diagnose::file_name(request.model);
+        result.summary["record"] = diagnose::file_name(request.records.front());
         if (!report.fitted()) return result;
         result.model = request.output;
         result.text = diagnose::better_model_text(report);

@@ -1,13 +1,13 @@
 // Fits and diagnoses that a page begins, what becomes of their results, and the folder that these
 // are written to, which may be full or gone when they end.
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <mutex>
 #include <utility>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
+#include "workbench/diagnose/words.h"
 #include "workbench/serve/request_fields.h"
 #include "workbench/serve/site.h"
 
@@ -18,16 +18,12 @@ using config::schema::UsageError;
 
 constexpr std::chrono::seconds kFolderPeriod{1};
 
-std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
-
 }  // namespace
 
 Site::Json Site::begin_fit(const Json& body) {
   fit::FitRequest request = study_.fit_request(values_in(body));
-  const std::string parent = file_name(request.model);
-  const std::string output = file_name(request.output);
+  const std::string parent = diagnose::file_name(request.model);
+  const std::string output = diagnose::file_name(request.output);
   const bool begun = jobs_.fit(
       std::move(request), progress(),
       [this, parent, output](JobResult result) { finish_job(std::move(result), parent, output); });
@@ -39,8 +35,8 @@ Site::Json Site::begin_fit(const Json& body) {
 Site::Json Site::begin_diagnosis(const Json& body) {
   diagnose::DiagnosisRequest request = study_.diagnosis_request(
       texts_in(body, "only"), body.contains("model") ? text_in(body, "model") : "");
-  const std::string parent = file_name(request.model);
-  const std::string output = file_name(request.output);
+  const std::string parent = diagnose::file_name(request.model);
+  const std::string output = diagnose::file_name(request.output);
   const bool begun = jobs_.diagnose(
       std::move(request), progress(),
       [this, parent, output](JobResult result) { finish_job(std::move(result), parent, output); });
@@ -97,7 +93,7 @@ void Site::take_unsaved() {
       }
       show_result({{"kind", "error"}, {"words", why}});
     }
-    folder_.release(file_name(result.model));
+    folder_.release(diagnose::file_name(result.model));
     unsaved_.pop_front();
   }
 }
@@ -105,7 +101,7 @@ void Site::take_unsaved() {
 void Site::take_result(const JobResult& result, const std::string& parent) {
   if (result.model.empty()) return;
   config::record::write_whole(result.model, result.text);
-  study_.take_trial(file_name(result.model), parent, result.what, result.command);
+  study_.take_trial(diagnose::file_name(result.model), parent, result.what, result.command);
 }
 
 void Site::end_jobs() {
@@ -113,7 +109,7 @@ void Site::end_jobs() {
   study_lane_.post_kept([this] {
     if (!unsaved_.empty()) check_folder(false);
     for (const Unsaved& lost : unsaved_) {
-      std::cerr << "spoolwatch serve: " << file_name(lost.result.model)
+      std::cerr << "spoolwatch serve: " << diagnose::file_name(lost.result.model)
                 << ": is not written: " << trouble_ << '\n';
     }
   });

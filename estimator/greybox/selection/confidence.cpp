@@ -68,6 +68,12 @@ bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect)
           (where.variable == "time" && effect == "null_bias" && is_same_site(where.site, site)));
 }
 
+/// True where the effect is among those that a step adds, which it joins by " + ".
+bool adds(const SelectionStep& step, const std::string& effect) {
+  const std::string all = " + " + step.added + " + ";
+  return all.find(" + " + effect + " + ") != std::string::npos;
+}
+
 /// Squared error of simulations that an effect explains, over that which remains, with the observer
 /// or in a free run; NaN where not known.
 double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
@@ -80,7 +86,7 @@ double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
   for (std::size_t i = 1; i < diagnosis.steps.size() && std::isnan(observed); ++i) {
     const SelectionStep& with = diagnosis.steps[i];
     const SelectionStep& without = diagnosis.steps[i - 1];
-    if (with.added.find(effect) == std::string::npos) continue;
+    if (!adds(with, effect)) continue;
     observed =
         explained_ratio(without.validation_rms_m, with.validation_rms_m, diagnosis.rms_after_m);
     free_run = explained_ratio(without.free_run_rms_m, with.free_run_rms_m,
@@ -166,7 +172,7 @@ Chance chance_of(const StructureSearch& search, const std::string& effect) {
 bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.by_innovations || diagnosis.missing.size() < 2) return false;
   for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
-    if (diagnosis.steps[i].added.find(effect) == std::string::npos) continue;
+    if (!adds(diagnosis.steps[i], effect)) continue;
     const double removed_m2 = std::pow(diagnosis.steps[i - 1].validation_rms_m, 2) -
                               std::pow(diagnosis.steps[i].validation_rms_m, 2);
     return removed_m2 < std::pow(diagnosis.noise_floor_m, 2) &&

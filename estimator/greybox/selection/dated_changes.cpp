@@ -37,10 +37,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   changed.verdict = Verdict::changing;
   // an effect that changes is named with its change
   std::erase_if(changed.missing, [&](const std::string& name) {
-    return is_change(name) || std::any_of(found.changes.begin(), found.changes.end(),
-                                          [&](const ParameterChange& change) {
-                                            return change.parameter.starts_with(name + ".");
-                                          });
+    return is_change(name) || changes_effect(found.changes, name);
   });
   changed.changing = found.changes;
   changed.where = before.where;

@@ -28,13 +28,6 @@ bool known(const ModelStage& first, const FreeParameter& parameter) {
                      [&](const FreeParameter& own) { return own.name == parameter.name; });
 }
 
-/// True for an effect whose parameter changes.
-bool belongs_to_change(const ChangeSearch& change, const std::string& effect) {
-  return std::any_of(change.changes.begin(), change.changes.end(), [&](const ParameterChange& one) {
-    return one.parameter.starts_with(effect + ".");
-  });
-}
-
 /// The fitted parameters of the model as given and of effects, those of changes left out.
 ModelStage with_effects_alone(const ModelStage& first, const FitSummary& fitted,
                               const std::vector<std::string>& effects) {
@@ -63,7 +56,7 @@ std::optional<ModelStage> effects_beside(const ModelStage& first, const ChangeSe
   // the change is the plant's as long as effects are sought
   SearchContext context = change.context;
   std::erase_if(context.problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
-    return belongs_to_change(change, effect.name);
+    return changes_effect(change.changes, effect.name);
   });
   ModelStage base = alone.final.model;
   base.added.clear();

@@ -1,6 +1,7 @@
 // A parameter that changes within a record, or from one record to another.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -31,5 +32,13 @@ struct ParameterChange {
   /// Parameters whose change would explain the record about as well.
   std::vector<std::string> rivals{};
 };
+
+/// True where a parameter of the effect is among those that change.
+[[nodiscard]] inline bool changes_effect(const std::vector<ParameterChange>& changes,
+                                         const std::string& effect) {
+  return std::any_of(changes.begin(), changes.end(), [&](const ParameterChange& change) {
+    return change.parameter.starts_with(effect + ".");
+  });
+}
 
 }  // namespace estimator::greybox::selection

@@ -85,7 +85,11 @@ TEST(Confidence, TheBestOfManyMayGainALittleByChance) {
   d.search.rounds[0].candidates.resize(10);
   EXPECT_THAT(named(d), IsEmpty());
   d.search.rounds[0].candidates = all;
-  d.steps[1].validation_rms_m = 4e-6;  // it removes more than the noise
+  // the step of another effect, whose name holds its own, removes more
+  d.steps.insert(d.steps.begin() + 2, {"my_external_leakage", 2.14e-6});
+  d.steps[1].validation_rms_m = 8e-6;
+  EXPECT_THAT(named(d), ElementsAre("external_leakage chance"));
+  d.steps[2].validation_rms_m = 4e-6;  // it removes more than the noise
   EXPECT_THAT(named(d), IsEmpty());
 }
 
