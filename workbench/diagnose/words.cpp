@@ -81,7 +81,10 @@ std::string unexplained_words(const selection::Diagnosis& d) {
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {
-    return "Unexplained: " + rest + ", and no effect of the library explains it.";
+    return "Unexplained: " + rest + ", and " +
+           (d.effects_only ? "none of the effects that were to be tried"
+                           : "no effect of the library") +
+           " explains it.";
   }
   return "Incomplete: " + config::schema::listed(established) +
          (established.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";

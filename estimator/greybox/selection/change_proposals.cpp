@@ -12,6 +12,10 @@ namespace {
 /// Most changes that are fitted by their scores, and the share of the best score that they need.
 constexpr std::size_t kFinalists = 6;
 constexpr double kWorthFitting = 0.5;
+/// Where a drift within the record is begun with, and a time constant, as shares of the record.
+constexpr double kDriftBegins = 0.25;
+constexpr double kDriftLasts = 0.4;
+constexpr double kDriftSettles = 0.2;
 /// Range of a changed plant parameter about the present value, in logarithms.
 constexpr double kRange = 2.3;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -78,13 +82,22 @@ void set_throughout(ChangeScore& score, const Dataset& record) {
   score.duration_s = record.t_s.back() - record.t_s.front();
 }
 
-/// Drifts of what a constant disturbance looks like: the innovations forget them as well.
+/// Drifts of what a constant disturbance looks like, over the whole record, within it, or towards
+/// an end value: the innovations forget them as well.
 void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
   const Dataset& record = stage.context.problem.data.records.front();
   for (const char* effect : {"null_bias", "load_force"}) {
     ChangeScore score = score_of_effect(stage, effect);
     if (score.parameter.name.empty()) continue;
     set_throughout(score, record);
+    scores.push_back(score);
+    const double length_s = score.duration_s;
+    score.at_s = record.t_s.front() + kDriftBegins * length_s;
+    score.duration_s = kDriftLasts * length_s;
+    scores.push_back(score);
+    score.kind = ChangeKind::exponential;
+    score.at_s = record.t_s.front();
+    score.duration_s = kDriftSettles * length_s;
     scores.push_back(score);
   }
 }

@@ -47,18 +47,20 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   return true;
 }
 
-/// Changes beside an effect where that was taken for a change and explains as much.
+/// Changes beside an effect where that was taken for a change; none where they do not explain the
+/// record: what hardly changes is no change to be stated.
 void prefer_effects(const SearchContext& context, const ModelStage& first, ChangesSought sought,
                     FoundChanges& changes) {
   if (!changes.explaining || context.cancelled()) return;
   const std::optional<ModelStage> steady = steady_effect(first, *changes.explaining);
   if (!steady) return;
-  const FoundChanges others = search_changes(context, *steady, sought);
-  if (others.explaining &&
-      penalised(others.explaining->innovations.final) <
-          penalised(changes.explaining->innovations.final) + 2.0 * kEvidence_nats) {
-    changes.explaining = others.explaining;
+  FoundChanges others = search_changes(context, *steady, sought);
+  if (!others.explaining) {  // beside the effect the motion may explain more than time, or less
+    const bool before = sought == ChangesSought::before_laws;
+    others = search_changes(context, *steady,
+                            before ? ChangesSought::after_laws : ChangesSought::before_laws);
   }
+  changes.explaining = others.explaining;
 }
 
 }  // namespace

@@ -258,6 +258,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const auto begin = std::chrono::steady_clock::now();
   SearchContext context{problem, options};
   Diagnosis result;
+  result.effects_only = problem.effects_only;
   result.floor_assumed = !std::isfinite(problem.data.noise_floor_m);
   assume_noise_floor(context.problem.data);
   result.noise_floor_m = context.problem.data.noise_floor_m;

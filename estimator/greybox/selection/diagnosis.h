@@ -99,6 +99,7 @@ struct Diagnosis {
   plant_sim::ModelFile better;  ///< the model file with it
   double step_error_m = 0.0;    ///< RMS by which a shorter step changes its simulation
   double runtime_s = 0.0;
+  bool effects_only = false;  ///< as in DiagnosisProblem
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;

@@ -5,6 +5,7 @@
 
 #include "estimator/greybox/pressure_scale.h"
 #include "estimator/greybox/selection/innovation_jacobian.h"
+#include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/split_scatter.h"
 #include "estimator/greybox/selection/step_error.h"
@@ -56,17 +57,25 @@ FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& sta
 void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   const ModelStage& stage = result.search.final;
   const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
-  const bool explained =
+  const auto observed = [&] {
+    return refit(context, all, context.problem.data.final_weights(), wide(context.options.threads));
+  };
+  bool with_observer =
       stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
   // what is left of the error is no noise: then the values are those that simulate best
   result.final = context.cancelled() ? stage.fitted
-                 : explained         ? refit(context, all, context.problem.data.final_weights(),
-                                             wide(context.options.threads))
+                 : with_observer     ? observed()
                                      : fit_free_run(context, all);
+  // a free run that follows a drift by bending the motion leaves more than the file does
+  if (!with_observer && !context.cancelled() &&
+      simulated(context, result.final).validation_rms_m > result.search.nominal_rms_m) {
+    result.final = observed();
+    with_observer = true;
+  }
   drop_idle_refinements(result.final);
   result.better = with_values(context.problem.model, result.final);
   const Eigen::VectorXd& weights = context.problem.data.final_weights();
-  const double observer_per_s = explained ? kObserver_per_s : 0.0;
+  const double observer_per_s = with_observer ? kObserver_per_s : 0.0;
   report_parameters(context, std_errors(context.problem.data, weights, result.final), weights,
                     observer_per_s, result);
 }
