@@ -189,6 +189,14 @@ TEST(FurtherColumns, ACommandAtRestStaysARivalOfTheCommand) {
   }
 }
 
+TEST(FurtherColumns, AnUnknownUnitLeavesTheOthersOfItsLine) {
+  expect_bad("t_s;u_V;y_m;T\ns;V;cm;°C\n0;1;2;41\n1;2;3;41\n", ":1", "m and cm");
+  expect_bad("t [s];u [V];y [mm];T\ns;V;cm;degC\n0;1;2;41\n1;2;3;41\n", ":1", "mm and cm");
+  const Record record =
+      read("Zeit;Ventil;Weg;Temp\nms;V;mm;°C\n0;1;200;41\n5;2;300;41\n10;2;310;41\n");
+  EXPECT_DOUBLE_EQ(record.y_m.front(), 0.2);
+}
+
 TEST(FurtherColumns, AGapInAnotherUnitIsRefused) {
   std::string text = "Time [s],Command [V],Position [m],p [Pa]\n";
   text += "0,1,0.1,50\n0.005,2,0.2,NaN bar\n0.01,3,0.3,52\n";

@@ -127,6 +127,18 @@ TEST(Changes, AnEffectIsNamedBesideANullThatDrifts) {
   EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
 }
 
+TEST(Changes, ANullThatDriftsForAWhileIsDated) {
+  const SearchContext context = changing_servo(
+      constant, [](double t_s) { return 0.05 * std::clamp((t_s - 5.0) / 7.0, 0.0, 1.0); });
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "null_bias.offset_V");
+  EXPECT_NEAR(d.changing.front().at_s, 5.0, 0.1);
+  EXPECT_NEAR(d.changing.front().duration_s, 7.0, 0.2);
+  EXPECT_NEAR(d.changing.front().to, 0.05, 5e-4);
+}
+
 TEST(Changes, AnOffsetBesideAGainThatStepsIsAnEffect) {
   const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
                                                [](double) { return 0.1; });
