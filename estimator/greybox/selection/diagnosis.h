@@ -64,6 +64,7 @@ struct Diagnosis {
   /// No floor can be read from the records: it is the noise that the likelihood has found, or the
   /// rounding alone.
   bool floor_assumed = false;
+  bool effects_only = false;               ///< as in DiagnosisProblem
   double nominal_rms_m = 0.0;              ///< held-out, the model file unchanged
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
   double rms_after_m = 0.0;                ///< held-out, better model
@@ -99,7 +100,6 @@ struct Diagnosis {
   plant_sim::ModelFile better;  ///< the model file with it
   double step_error_m = 0.0;    ///< RMS by which a shorter step changes its simulation
   double runtime_s = 0.0;
-  bool effects_only = false;  ///< as in DiagnosisProblem
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
