@@ -16,6 +16,8 @@ constexpr double kWorthFitting = 0.5;
 constexpr double kDriftBegins = 0.25;
 constexpr double kDriftLasts = 0.4;
 constexpr double kDriftSettles = 0.2;
+/// Time constants in the length of the ramp that an exponential looks like.
+constexpr double kConstantsOfRamp = 2.5;
 /// Range of a changed plant parameter about the present value, in logarithms.
 constexpr double kRange = 2.3;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -166,6 +168,9 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
         duration_parameter(name_of(score) + ".time_constant_s", score.duration_s,
                            10.0 * record.sample_time_s, 10.0 * (end_s - begin_s)),
         0.0);
+    if (score.at_s > begin_s) {
+      add(all, time_parameter(name_of(score) + ".at_s", score.at_s, record), 0.0);
+    }
   } else if (!whole) {
     add(all, time_parameter(name_of(score) + ".at_s", score.at_s, record), 0.0);
   }
@@ -208,7 +213,7 @@ ChangeScore ramp_throughout(const ChangeScore& exponential, const FitSummary& fi
   const double time_constant_s = fitted.value(own + ".time_constant_s");
   const double reached = -std::expm1(-ramp.duration_s / time_constant_s);
   const double from = fitted.value(exponential.parameter.name);
-  const double begun = std::isfinite(from) ? from : 0.0;  // 0: the effect is absent
+  const double begun = std::isfinite(from) ? from : exponential.unfitted_value();
   const double end = begun + reached * (fitted.value(own + ".value") - begun);
   const double by = exponential.parameter.to_theta(end) - exponential.parameter.to_theta(begun);
   if (std::isfinite(by)) ramp.by = by;
@@ -224,6 +229,14 @@ ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted, const 
   ramp.at_s = std::max(record.t_s.front(),
                        (std::isfinite(at_s) ? at_s : step.at_s) - 0.5 * ramp.duration_s);
   return ramp;
+}
+
+ChangeScore settling_from(const ChangeScore& ramp, const FitSummary& fitted) {
+  ChangeScore settling = ramp;
+  settling.kind = ChangeKind::exponential;
+  settling.at_s = fitted.value(name_of(ramp) + ".at_s");
+  settling.duration_s = fitted.value(name_of(ramp) + ".ramp_s") / kConstantsOfRamp;
+  return settling;
 }
 
 ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted) {
@@ -250,7 +263,7 @@ ParameterChange described(const ChangeScore& score, const FitSummary& fitted,
                       : change.kind == ChangeKind::ramp
                           ? value_or(own + ".ramp_s", score.duration_s)
                           : value_or(own + ".time_constant_s", score.duration_s);
-  change.from = value_or(change.parameter, 0.0);
+  change.from = value_or(change.parameter, score.unfitted_value());
   change.from_error = error_of(fitted, errors, change.parameter);
   change.to = fitted.value(own + ".value");
   change.to_error = error_of(fitted, errors, own + ".value");

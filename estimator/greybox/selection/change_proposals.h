@@ -32,6 +32,8 @@ struct ChangeProposal {
 /// A ramp about a fitted step: the likelihood decides whether it took time.
 [[nodiscard]] ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted,
                                      const Dataset& record);
+/// An exponential in the place of a fitted ramp: the likelihood decides how it settles.
+[[nodiscard]] ChangeScore settling_from(const ChangeScore& ramp, const FitSummary& fitted);
 /// A step in the middle of a fitted ramp.
 [[nodiscard]] ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted);
 

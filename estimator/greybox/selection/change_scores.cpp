@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "estimator/greybox/held_scale.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -21,18 +26,39 @@ constexpr double kShares[] = {0.03, 0.1, 0.3};
 constexpr double kSmall = 0.05;
 /// Share of a column that must remain beside the model's own freedom.
 constexpr double kVisible = 1e-6;
+/// Range of a held gain about the file's value, in logarithms.
+constexpr double kHeldRange = 2.3;
 
 /// Sensitivities to parameters, in standard deviations: of the innovations, and beneath them of the
 /// distances that the model's own parameters keep from their priors.
 struct Columns {
   std::vector<FreeParameter> parameters;
-  std::vector<bool> absent;
+  std::vector<bool> unfitted;  ///< the model has no freedom of this parameter
   MatrixXd values;
   VectorXd rest;  ///< the innovations, and the distances from the priors
+
+  /// True for the size of an effect that the model does not have.
+  [[nodiscard]] bool absent(std::size_t i) const {
+    return unfitted[i] && parameters[i].name.find('.') != std::string::npos;
+  }
 };
 
-/// Sizes of absent effects by difference quotients.
-void add_absent_effects(const InnovationStage& stage, Columns& columns) {
+/// The gain of the drive, where it is held because the forces scale with it: it may fade
+/// nevertheless. Areas, which are held for the same reason, do not.
+std::optional<FreeParameter> held_gain(const plant_sim::ModelFile& model,
+                                       const FitSummary& fitted) {
+  std::vector<std::string> names;
+  for (const FreeParameter& own : fitted.parameters) names.push_back(own.name);
+  const std::string name = held_scale(model, names).parameter;
+  if (!name.starts_with("gain_")) return {};
+  plant_sim::ModelFile copy = model;
+  FreeParameter gain{name, ParameterScale::logarithmic, *copy.value(name), -kHeldRange, kHeldRange};
+  gain.prior_sd = std::numeric_limits<double>::infinity();
+  return gain;
+}
+
+/// Sizes of absent effects, and a held gain, by difference quotients.
+void add_unfitted(const InnovationStage& stage, Columns& columns) {
   const SearchContext& context = stage.context;
   const FitSummary& fitted = stage.model.fitted;
   const double floor_m = context.problem.data.noise_floor_m;
@@ -45,6 +71,7 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
     if (own.empty() || own.front().scale != ParameterScale::linear || present) continue;
     sizes.push_back(own.front());
   }
+  if (const auto gain = held_gain(context.problem.model, fitted)) sizes.push_back(*gain);
   all.insert(all.end(), sizes.begin(), sizes.end());
   const auto own = static_cast<Index>(fitted.parameters.size());
   const auto count = static_cast<Index>(sizes.size());
@@ -68,7 +95,7 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
   }
   for (const FreeParameter& size : sizes) {
     columns.parameters.push_back(size);
-    columns.absent.push_back(true);
+    columns.unfitted.push_back(true);
   }
 }
 
@@ -87,7 +114,7 @@ Columns columns_of(const InnovationStage& stage) {
     columns.values(samples + i, i) = 1.0 / p.prior_sd;
     columns.rest[samples + i] = (fitted.theta[i] - p.prior_mean) / p.prior_sd;
   }
-  add_absent_effects(stage, columns);
+  add_unfitted(stage, columns);
   return columns;
 }
 
@@ -101,10 +128,10 @@ MatrixXd basis_of(const MatrixXd& jacobian) {
 /// One parameter's column with the basis that its course has to leave.
 class Course {
  public:
-  Course(const MatrixXd& basis, const VectorXd& rest, const VectorXd& column, bool absent)
+  Course(const MatrixXd& basis, const VectorXd& rest, const VectorXd& column, bool unfitted)
       : column_(column), basis_(basis), rest_(rest) {
-    if (!absent) return;
-    // the effect throughout is no change: it belongs to the model's freedom here
+    if (!unfitted) return;
+    // another value throughout is no change: it belongs to the model's freedom here
     VectorXd own = column - basis * (basis.transpose() * column);
     const double norm = own.norm();
     if (!(norm > kVisible * column.norm())) return;
@@ -214,8 +241,8 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     if (columns.parameters[i].name.starts_with("change."))
       continue;  // part of a change found before
     const VectorXd column = columns.values.col(c);
-    const Course course(basis, rest, column, columns.absent[i]);
-    ChangeScore score{columns.parameters[i], columns.absent[i]};
+    const Course course(basis, rest, column, columns.unfitted[i]);
+    ChangeScore score{columns.parameters[i], columns.absent(i)};
     score.throughout_nats = course.throughout_nats();
     ChangeScore step = score;
     const Index at = course.score_steps(grid, t_s.size(), step);
@@ -261,7 +288,7 @@ std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
     const auto i = static_cast<std::size_t>(c);
     if (columns.parameters[i].name.find(kInRecord) != std::string::npos) continue;
     const VectorXd column = columns.values.col(c);
-    const Course course(basis, rest, column, columns.absent[i]);
+    const Course course(basis, rest, column, columns.unfitted[i]);
     for (const std::string& name : names) {
       VectorXd within = VectorXd::Zero(data.size());
       for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -270,7 +297,7 @@ std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
             .segment(static_cast<Index>(data.starts[r]), static_cast<Index>(data.records[r].size()))
             .setOnes();
       }
-      ChangeScore score{columns.parameters[i], columns.absent[i], ChangeKind::record};
+      ChangeScore score{columns.parameters[i], columns.absent(i), ChangeKind::record};
       score.record = name;
       course.score(within, score);
       scores.push_back(std::move(score));

@@ -26,6 +26,10 @@ struct ChangeScore {
   double gain_nats = 0.0;        ///< over the same effect throughout, where it is absent
   double throughout_nats = 0.0;  ///< gain of an absent effect throughout, without its change
   std::string record{};          ///< where the parameter differs, for ChangeKind::record
+
+  /// Value throughout where the model does not fit the parameter: none of an absent effect, the
+  /// file's of a held one.
+  [[nodiscard]] double unfitted_value() const { return absent ? 0.0 : parameter.to_physical(0.0); }
 };
 
 /// The likeliest time of each kind for every parameter, best first; none for several records.

@@ -24,6 +24,10 @@ constexpr double kScanStep = 4.0;
 constexpr int kScans = 3;
 /// Share of the record at its ends in which a step is none.
 constexpr double kEnds = 0.01;
+/// Samples about a change within which a load that sets in is the change's: a model that brings the
+/// gain before the lag instead of behind it is off by the lag there.
+constexpr double kEdge_samples = 10.0;
+constexpr double kStandardErrors = 2.0;
 /// Time constants after which an exponential has settled.
 constexpr double kSettledAfter = 3.0;
 
@@ -158,9 +162,11 @@ bool at_an_end(const Dataset& record, const ParameterChange& change) {
 bool ends_beyond(const Dataset& record, const ChangeProposal& change,
                  const InnovationStage& fitted) {
   if (change.score.kind != ChangeKind::exponential) return false;
-  const double time_constant_s =
-      fitted.model.fitted.value(name_of(change.score) + ".time_constant_s");
-  return kSettledAfter * time_constant_s > record.t_s.back() - record.t_s.front();
+  const std::string own = name_of(change.score);
+  const double time_constant_s = fitted.model.fitted.value(own + ".time_constant_s");
+  const double at_s = fitted.model.fitted.value(own + ".at_s");
+  const double begin_s = std::isfinite(at_s) ? at_s : record.t_s.front();
+  return kSettledAfter * time_constant_s > record.t_s.back() - begin_s;
 }
 
 /// Adds the likeliest change; false when none gains enough.
@@ -188,6 +194,18 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
   }
   std::size_t chosen = best_of(proposals, stages);
+  if (std::isfinite(
+          stages[chosen].model.fitted.value(name_of(proposals[chosen].score) + ".ramp_s"))) {
+    const std::size_t settling =
+        also(settling_from(proposals[chosen].score, stages[chosen].model.fitted));
+    // where it has not settled, the end value is a guess
+    if (!ends_beyond(record, proposals[settling], stages[settling])) {
+      chosen = best_of(proposals, stages);
+    } else {
+      proposals.pop_back();
+      stages.pop_back();
+    }
+  }
   if (ends_beyond(record, proposals[chosen], stages[chosen])) {
     // the record does not reach its end, which is no value to state
     const std::size_t ramp =
@@ -200,6 +218,18 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
   scores_taken.push_back(proposals[chosen].score);
   return true;
+}
+
+/// True where the likeliest load sets in with a change, or where its ramp ends.
+bool is_edge(const ChangeSearch& search) {
+  const double at_s = search.innovations.jump.time_s;
+  const double edge_s = kEdge_samples * search.context.problem.data.sample_time_s;
+  return std::any_of(
+      search.changes.begin(), search.changes.end(), [&](const ParameterChange& change) {
+        const double end_s =
+            change.kind == ChangeKind::ramp ? change.at_s + change.duration_s : change.at_s;
+        return std::abs(at_s - change.at_s) < edge_s || std::abs(at_s - end_s) < edge_s;
+      });
 }
 
 /// The search with the changes of a stage described, the lines that are seen beside them, and what
@@ -217,6 +247,7 @@ ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
   }
   search.innovations.final = std::move(stage);
   weigh_remainder(search.context, search.innovations);
+  if (is_edge(search)) search.innovations.jump = {};
   return search;
 }
 
@@ -238,6 +269,20 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
   return found;
 }
 
+bool is_clear_of_errors(const ParameterChange& change) {
+  const double error = std::hypot(change.from_error, change.to_error);
+  return !(std::abs(change.to - change.from) < kStandardErrors * error);
+}
+
+/// True where a simulation with the changes leaves clearly less than one with the others: what the
+/// likelihood gains in a pause of the motion is nothing to be stated.
+bool simulates_better(const ChangeSearch& changes, const ChangeSearch& others) {
+  const auto left_m = [](const ChangeSearch& search) {
+    return simulated(search.context, search.innovations.final.model.fitted).validation_rms_m;
+  };
+  return left_m(changes) < (1.0 - kRivals) * left_m(others);
+}
+
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
 /// first one leaves.
 FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
@@ -253,6 +298,10 @@ FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
     const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
     if (!result.likeliest) result.likeliest = found;
     if (best && !(cost(found) < cost(*best) - 2.0 * enough_nats)) break;
+    if (best && !best->innovations.physics_missing() &&
+        !(is_clear_of_errors(found.changes.back()) && simulates_better(found, *best))) {
+      break;
+    }
     best = std::move(found);
   }
   if (!best || plain.cancelled()) return {};

@@ -251,6 +251,16 @@ std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
   return {};
 }
 
+/// Effects whose rivals are sought: those that gain little beside what physics is missing are not
+/// established anyway.
+std::vector<std::string> worth_rivals(const InnovationSearch& innovations,
+                                      const Diagnosis& result) {
+  std::vector<std::string> effects = innovations.final.model.added;
+  if (!innovations.physics_missing()) return effects;
+  std::erase_if(effects, [&](const auto& name) { return !is_clear_of_remainder(result, name); });
+  return effects;
+}
+
 }  // namespace
 
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
@@ -300,7 +310,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   } else {
     take_parameters(innovations.final, result);
   }
-  for (const InnovationRivals& rivals : find_rivals(search, innovations)) {
+  for (const InnovationRivals& rivals :
+       find_rivals(search, innovations, worth_rivals(innovations, result))) {
     const Separable& separable = search.options.separable;
     const bool separates =
         search.cancelled() || (separable && separable(search, rivals.explanations, rivals.names));

@@ -191,10 +191,7 @@ std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::s
   if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect).p_value > kLikelyChance) {
     return Doubt::chance;
   }
-  if (likely_ratio(diagnosis, effect) < kClearOfRemainder &&
-      !(simulated_ratio(diagnosis, effect) >= kClearOfRemainder)) {
-    return Doubt::remainder;
-  }
+  if (!is_clear_of_remainder(diagnosis, effect)) return Doubt::remainder;
   if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;
   return {};
 }
@@ -205,6 +202,11 @@ double explained_ratio(double gain_nats, double curve_nats, double innovations) 
   if (!(curve_nats > 0.0)) return std::numeric_limits<double>::infinity();
   const double nats = 0.5 * innovations;
   return std::expm1(gain_nats / nats) / (curve_nats / nats);
+}
+
+bool is_clear_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
+  return !(likely_ratio(diagnosis, effect) < kClearOfRemainder) ||
+         simulated_ratio(diagnosis, effect) >= kClearOfRemainder;
 }
 
 const char* to_string(Doubt doubt) {

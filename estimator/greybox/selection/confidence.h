@@ -39,6 +39,9 @@ struct PossibleEffect {
   Doubt why;
 };
 
+/// True where an effect explains so much, by the likelihood or by simulations.
+[[nodiscard]] bool is_clear_of_remainder(const Diagnosis& diagnosis, const std::string& effect);
+
 /// Effects of `missing` that are not established; parameters and verdict must be set.
 [[nodiscard]] std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis);
 

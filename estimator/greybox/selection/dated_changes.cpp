@@ -65,11 +65,12 @@ void prefer_effects(const SearchContext& context, const ModelStage& first, Chang
 
 }  // namespace
 
-bool date_changes(const SearchContext& context, const ModelStage& first, const ModelStage& likely,
-                  Diagnosis& result, ChangesSought sought) {
+bool date_changes(const SearchContext& context, const ModelStage& first,
+                  const ModelStage& likeliest, Diagnosis& result, ChangesSought sought) {
   std::vector<ModelStage> bases{first};
-  for (const ModelStage& found : {result.search.final, likely}) {
-    if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
+  for (const ModelStage& found : {result.search.final, likeliest}) {
+    const bool known = found.added == bases.back().added;
+    if (!known && found.added.size() < kStandIn) bases.push_back(found);
   }
   std::optional<ModelStage> beside;
   for (const ModelStage& base : bases) {

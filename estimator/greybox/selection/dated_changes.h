@@ -7,9 +7,9 @@
 namespace estimator::greybox::selection {
 
 /// Takes changes where no effect explains the record and they do, alone or beside effects. False:
-/// `result` is as before. `likely`: a model whose effects were dropped; without effects: none was.
+/// `result` is as before. `likeliest`: the model that the innovations chose among effects.
 [[nodiscard]] bool date_changes(const SearchContext& context, const ModelStage& first,
-                                const ModelStage& likely, Diagnosis& result,
+                                const ModelStage& likeliest, Diagnosis& result,
                                 ChangesSought sought = ChangesSought::before_laws);
 
 }  // namespace estimator::greybox::selection

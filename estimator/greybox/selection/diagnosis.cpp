@@ -36,9 +36,9 @@ constexpr std::size_t kBeforeLaws = 2;
 
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
-/// nearly the same, the disturbance in both decides. Returns the likelier model that was dropped.
-ModelStage drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
-  if (innovations.final.model.added.empty() || search.cancelled()) return {};
+/// nearly the same, the disturbance in both decides.
+void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
+  if (innovations.final.model.added.empty() || search.cancelled()) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
   // the model without effects, with the lines that were known before the first of them
   const auto plain_round =
@@ -48,20 +48,18 @@ ModelStage drop_worthless(const SearchContext& search, InnovationSearch& innovat
                                   ? innovations.before.model.fitted
                                   : plain_round->before.fitted;
   const double without_m = simulated(search, without).validation_rms_m;
-  if (with_m < (1.0 + kClearlyWorse) * without_m) return {};
+  if (with_m < (1.0 + kClearlyWorse) * without_m) return;
   InnovationSearch plain;
   plain.before = innovations.before;
   plain.final = std::move(innovations.before);
   weigh_remainder(search, plain);
-  ModelStage dropped = std::move(innovations.final.model);
   innovations = std::move(plain);
-  return dropped;
 }
 
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
-/// `dropped`: a likelier model that simulates worse.
+/// `likeliest`: the model of the former, whichever is taken.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
-                       Diagnosis& result, ModelStage& dropped) {
+                       Diagnosis& result, ModelStage& likeliest) {
   const ModelStage first = start.first;
   result.search = abandon_search(search, start);
   SearchLimits limits;
@@ -86,7 +84,8 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, result);
     return;
   }
-  dropped = drop_worthless(search, innovations);
+  likeliest = innovations.final.model;
+  drop_worthless(search, innovations);
   const auto take_innovations = [&] {
     if (!innovations.physics_missing()) {
       refuse(start.branch.stage, Refusal::unlikely, start.first, result.search);
@@ -187,16 +186,16 @@ bool drifts(const Diagnosis& result, const FitDataset& data) {
 /// Seeks what differs between records, changes in time and laws, where effects leave something to
 /// them.
 void look_beyond_effects(const SearchContext& search, const ModelStage& first,
-                         const ModelStage& dropped, Diagnosis& result) {
+                         const ModelStage& likeliest, Diagnosis& result) {
   if (!search.cancelled()) (void)find_record_differences(search, first, result);
   if (result.verdict == Verdict::unexplained && !search.cancelled()) {
-    if (!date_changes(search, first, dropped, result) && !learn_laws(search, first, result)) {
-      (void)date_changes(search, first, dropped, result, ChangesSought::after_laws);
+    if (!date_changes(search, first, likeliest, result) && !learn_laws(search, first, result)) {
+      (void)date_changes(search, first, likeliest, result, ChangesSought::after_laws);
     }
   }
   if (result.verdict == Verdict::nothing_missing && !search.cancelled() &&
       drifts(result, search.problem.data)) {
-    (void)date_changes(search, first, dropped, result);
+    (void)date_changes(search, first, likeliest, result);
   }
 }
 
@@ -284,7 +283,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
-  ModelStage dropped;
+  ModelStage likeliest;
   const bool wrong_record = result.checks && result.checks->turned_sign();
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
@@ -296,9 +295,9 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
   } else {
-    weigh_innovations(context, search, std::move(start), result, dropped);
+    weigh_innovations(context, search, std::move(start), result, likeliest);
   }
-  if (!wrong_record && !problem.effects_only) look_beyond_effects(search, first, dropped, result);
+  if (!wrong_record && !problem.effects_only) look_beyond_effects(search, first, likeliest, result);
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);
   }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "config/schema/joined.h"
-#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/rig_scale.h"
@@ -252,17 +251,13 @@ std::vector<InnovationStage> exchanges_of(const SearchContext& with_holdouts,
 }
 
 std::vector<InnovationRivals> find_rivals(const SearchContext& context,
-                                          const InnovationSearch& search) {
+                                          const InnovationSearch& search,
+                                          const std::vector<std::string>& effects) {
   const std::vector<std::string>& added = search.final.model.added;
   std::vector<InnovationRivals> groups;
   TrialMemo memo = search.memo;
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
-    const auto gain = search.gains_nats.find(added[i]);
-    const auto count = static_cast<double>(search.final.model.fitted.residual_m.size());
-    if (search.physics_missing() && gain != search.gains_nats.end() &&
-        explained_ratio(gain->second, search.curve_nats, count) < kClearOfRemainder) {
-      continue;
-    }
+    if (std::find(effects.begin(), effects.end(), added[i]) == effects.end()) continue;
     const auto known = search.rivals.find(added[i]);
     InnovationRivals group =
         known != search.rivals.end()

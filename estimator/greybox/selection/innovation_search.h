@@ -98,9 +98,9 @@ void weigh_remainder(const SearchContext& context, InnovationSearch& search);
                                                         const InnovationSearch& search,
                                                         std::size_t i, TrialMemo& memo);
 
-/// For each effect found, those that explain the record about as well in its place. Effects that
-/// gained little beside what physics is missing are left out: they are not established anyway.
+/// For each of `effects`, those that explain the record about as well in its place.
 [[nodiscard]] std::vector<InnovationRivals> find_rivals(const SearchContext& context,
-                                                        const InnovationSearch& search);
+                                                        const InnovationSearch& search,
+                                                        const std::vector<std::string>& effects);
 
 }  // namespace estimator::greybox::selection

@@ -40,8 +40,8 @@ ModelStage with_difference(const ModelStage& stage, const ChangeScore& score) {
   const auto known = std::find_if(stage.fitted.parameters.begin(), stage.fitted.parameters.end(),
                                   [&](const FreeParameter& p) { return p.name == own.name; });
   const bool absent = known == stage.fitted.parameters.end();
-  const double shared =
-      absent ? own.to_theta(0.0) : stage.fitted.theta[known - stage.fitted.parameters.begin()];
+  const double shared = absent ? own.to_theta(score.unfitted_value())
+                               : stage.fitted.theta[known - stage.fitted.parameters.begin()];
   own.name = parameter_of(score);
   own.prior_sd = std::numeric_limits<double>::infinity();
   if (own.scale == ParameterScale::logarithmic) {
@@ -163,7 +163,7 @@ void describe(const std::vector<ParameterValue>& values, Differences& found) {
     const auto from = value_of(change.parameter);
     change.at_s = std::nan("");
     change.duration_s = std::nan("");
-    change.from = from == values.end() ? 0.0 : from->value;
+    change.from = from == values.end() ? found.scores[i].unfitted_value() : from->value;
     if (from != values.end()) change.from_error = from->std_error;
     if (to != values.end()) {
       change.to = to->value;

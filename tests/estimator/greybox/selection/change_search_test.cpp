@@ -139,6 +139,19 @@ TEST(Changes, ANullThatDriftsForAWhileIsDated) {
   EXPECT_NEAR(d.changing.front().to, 0.05, 5e-4);
 }
 
+TEST(Changes, ANullThatSettlesFromATimeOnIsAnExponential) {
+  const SearchContext context = changing_servo(
+      constant, [](double t_s) { return t_s < 6.0 ? 0.0 : 0.08 * -std::expm1((6.0 - t_s) / 2.5); });
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "null_bias.offset_V");
+  EXPECT_EQ(d.changing.front().kind, ChangeKind::exponential);
+  EXPECT_NEAR(d.changing.front().at_s, 6.0, 0.1);
+  EXPECT_NEAR(d.changing.front().duration_s, 2.5, 0.1);
+  EXPECT_NEAR(d.changing.front().to, 0.08, 5e-4);
+}
+
 TEST(Changes, AnOffsetBesideAGainThatStepsIsAnEffect) {
   const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
                                                [](double) { return 0.1; });

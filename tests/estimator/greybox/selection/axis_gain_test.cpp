@@ -1,0 +1,97 @@
+// The gain of an axis driven by force is held in every fit, because mass and all forces scale with
+// it. What it becomes within a record is seen nevertheless.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "config/record/record.h"
+#include "estimator/greybox/selection/diagnosis.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+constexpr double kGain_N_per_V = 35.0;
+
+/// M v' = g(t) u - d v - F under a proportional controller, in steps of 0.05 ms; 2 um of noise and
+/// an encoder of 1 um.
+template <class Gain>
+SearchContext axis_context(const Gain& gain_N_per_V, double load_N) {
+  constexpr double kTs_s = 0.005;
+  constexpr int kSteps = 100;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise_m(0.0, 2e-6);
+  config::record::Record record;
+  record.name = "axis";
+  record.sample_time_s = kTs_s;
+  double y_m = 0.0;
+  double v_mps = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double t_s = kTs_s * k;
+    const double asked_m =
+        0.05 * (std::sin(0.9 * t_s) + 0.6 * std::sin(3.1 * t_s) + 0.3 * std::sin(8.3 * t_s));
+    const double read_m = 1e-6 * std::round((y_m + noise_m(random)) / 1e-6);
+    const double u_V = std::clamp(30.0 * (asked_m - read_m), -10.0, 10.0);
+    record.t_s.push_back(t_s);
+    record.u_V.push_back(u_V);
+    record.y_m.push_back(read_m);
+    for (int i = 0; i < kSteps; ++i) {
+      constexpr double kStep_s = kTs_s / kSteps;
+      const double force_N = gain_N_per_V(t_s + kStep_s * i) * u_V - 210.0 * v_mps - load_N;
+      const double before_mps = v_mps;
+      v_mps += kStep_s * force_N / 98.0;
+      y_m += 0.5 * kStep_s * (before_mps + v_mps);
+    }
+  }
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/force_driven_axis.toml");
+  *model.value("gain_N_per_V") = kGain_N_per_V;
+  return {make_problem(std::move(model), fit_dataset({dataset_of(record)}, {})), {}};
+}
+
+double fades(double t_s) { return t_s < 11.7 ? kGain_N_per_V : 0.85 * kGain_N_per_V; }
+
+TEST(AxisGain, FadesBesideALoad) {
+  const SearchContext context = axis_context(fades, 18.0);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  const ParameterChange& change = d.changing.front();
+  EXPECT_EQ(change.parameter, "gain_N_per_V");
+  EXPECT_EQ(change.kind, ChangeKind::step);
+  EXPECT_NEAR(change.at_s, 11.7, 0.01);
+  EXPECT_EQ(change.from, kGain_N_per_V);
+  EXPECT_NEAR(change.to, 0.85 * kGain_N_per_V, 3.0 * change.to_error + 1e-3);
+  // a load and an offset of the command differ by the gain's step alone
+  EXPECT_THAT(d.missing, ElementsAre("load_force"));
+}
+
+TEST(AxisGain, ThatIsSteadyDoesNotChange) {
+  const SearchContext context = axis_context([](double) { return kGain_N_per_V; }, 0.0);
+  EXPECT_EQ(diagnose(context.problem, context.options).verdict, Verdict::nothing_missing);
+}
+
+// An offset and a load are one on an axis, also where an error remains.
+TEST(AxisGain, ThatIsNotSoughtLeavesOffsetAndLoadRivals) {
+  SearchContext context = axis_context(fades, 18.0);
+  context.problem.effects_only = true;
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  ASSERT_THAT(d.missing, SizeIs(1));
+  if (d.possible.empty()) {
+    auto groups = d.ambiguous;
+    groups.insert(groups.end(), d.same_here.begin(), d.same_here.end());
+    EXPECT_THAT(groups, Contains(UnorderedElementsAre("null_bias", "load_force")));
+  }
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
