@@ -274,13 +274,22 @@ bool is_clear_of_errors(const ParameterChange& change) {
   return !(std::abs(change.to - change.from) < kStandardErrors * error);
 }
 
+/// Held-out error of a simulation with the changes.
+double left_m(const ChangeSearch& search) {
+  return simulated(search.context, search.innovations.final.model.fitted).validation_rms_m;
+}
+
 /// True where a simulation with the changes leaves clearly less than one with the others: what the
 /// likelihood gains in a pause of the motion is nothing to be stated.
 bool simulates_better(const ChangeSearch& changes, const ChangeSearch& others) {
-  const auto left_m = [](const ChangeSearch& search) {
-    return simulated(search.context, search.innovations.final.model.fitted).validation_rms_m;
-  };
   return left_m(changes) < (1.0 - kRivals) * left_m(others);
+}
+
+/// True where no change can be stated beside those found: nothing of the motion is left, and no
+/// simulation is clearly better.
+bool is_complete(const ChangeSearch& search) {
+  return !search.innovations.physics_missing() &&
+         (1.0 - kRivals) * left_m(search) <= search.context.problem.data.noise_floor_m;
 }
 
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
@@ -292,7 +301,8 @@ FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
   FoundChanges result;
   std::optional<ChangeSearch> best;
   std::vector<ChangeScore> taken;
-  while (taken.size() < kMostChanges && add_change(plain, stage, search, taken)) {
+  while (taken.size() < kMostChanges && !(best && is_complete(*best)) &&
+         add_change(plain, stage, search, taken)) {
     ChangeSearch found = concluded(search, stage, taken);
     const auto cost = [](const ChangeSearch& one) { return penalised(one.innovations.final); };
     const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
