@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "config/record/record.h"
+#include "config/record/text_fields.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "config/schema/spelling.h"
@@ -61,15 +62,23 @@ void require_samples(const greybox::FitDataset& data, std::size_t parameters) {
       fmt::format("{:.0f} or more of each: a longer record, or less to --ignore", least));
 }
 
+/// Names without blanks around: "friction " of "--only 'friction , backlash'".
+std::vector<std::string> trimmed_names(std::vector<std::string> names) {
+  for (std::string& name : names) name = config::record::trimmed(name);
+  return names;
+}
+
 /// Leaves the effects that are to be tried.
 void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::EffectInfo>& effects) {
+  const std::vector<std::string> only = trimmed_names(request.only);
+  const std::vector<std::string> without = trimmed_names(request.without);
   const auto names = [](const std::vector<std::string>& list, const plant_sim::EffectInfo& effect) {
     return std::any_of(list.begin(), list.end(), [&](const std::string& name) {
       return plant_sim::library_name(name) == effect.name;
     });
   };
   for (const auto& [option, list] :
-       {std::pair("--only", &request.only), std::pair("--without", &request.without)}) {
+       {std::pair("--only", &only), std::pair("--without", &without)}) {
     for (const std::string& name : *list) {
       const auto named = [&, known = plant_sim::library_name(name)](
                              const plant_sim::EffectInfo& effect) { return effect.name == known; };
@@ -85,9 +94,12 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
     }
   }
   std::erase_if(effects, [&](const plant_sim::EffectInfo& effect) {
-    return (!request.only.empty() && !names(request.only, effect)) ||
-           names(request.without, effect);
+    return (!only.empty() && !names(only, effect)) || names(without, effect);
   });
+  if (effects.empty() && !only.empty()) {
+    throw config::schema::UsageError("--without names every effect of --only: " +
+                                     config::schema::joined(only) + "; none is left to try");
+  }
 }
 
 }  // namespace

@@ -81,6 +81,17 @@ TEST_F(DiagnoseRequest, AShortRecordIsFittedAndScored) {
   EXPECT_EQ(data.validation_mask.sum(), 200.0);
 }
 
+TEST_F(DiagnoseRequest, BlanksAroundNamesOfEffectsCountForNothing) {
+  request_.only = {"deadband ", " backlash"};
+  EXPECT_EQ(prepare(request_).problem.candidate_effects.size(), 2U);
+}
+
+TEST_F(DiagnoseRequest, OnlyAndWithoutTheSameEffectAreRefused) {
+  request_.only = {"deadband"};
+  request_.without = {"deadband"};
+  expect_refused(2, "--without names every effect of --only: deadband");
+}
+
 TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
   request_.ignored = {"1-2"};
   expect_refused(2, "is not a span");
