@@ -48,6 +48,7 @@ class Assembly {
       resample();
     }
     note_units();
+    note_constant_command();
     return std::move(record_);
   }
 
@@ -190,6 +191,11 @@ class Assembly {
     return file_.place(row_.empty() || i >= row_.size() ? i : row_[i]);
   }
 
+  /// True where times stand still and never go back.
+  [[nodiscard]] bool times_repeat() const {
+    return std::is_sorted(record_.t_s.begin(), record_.t_s.end());
+  }
+
   void take_grid() {
     const auto where = [this](std::size_t i) { return place(i); };
     try {
@@ -200,6 +206,11 @@ class Assembly {
       std::optional<NominalGrid> grid = find_nominal_grid(record_.t_s);
       if (!grid) {
         const bool rate = std::string_view(uneven.what()).find("unevenly") != std::string::npos;
+        if (!rate && times_repeat()) {
+          throw schema::DataError(std::string(uneven.what()) +
+                                  ": its clock is too coarse to tell the rate; state it with "
+                                  "--map t=RATEHz");
+        }
         if (!rate) throw;
         throw schema::DataError(std::string(uneven.what()) + "; or --resample, which interpolates");
       }
@@ -339,6 +350,17 @@ class Assembly {
                               ": every " + config::units::axis_unit("m") +
                               " of the results stands for 1 " + unit_words(record_.position_unit));
     }
+  }
+
+  void note_constant_command() {
+    const Values& u = record_.u_V;
+    const bool changes =
+        std::any_of(u.begin(), u.end(), [&u](double value) { return value != u.front(); });
+    if (u.empty() || changes || !record_.has_position) return;
+    record_.notes.push_back(
+        fmt::format("the command is {:.6g} {} throughout: nothing can be "
+                    "learned of its effect",
+                    u.front(), unit_words(record_.command_unit)));
   }
 
   const Layout& layout_;

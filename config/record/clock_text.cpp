@@ -38,28 +38,35 @@ bool take_char(std::string_view& text, char c) {
   return true;
 }
 
-/// "12:34:56.789", "12:34:56,789", "1:02:03 PM"; the rest stays in `text`.
-bool take_time_of_day(std::string_view& text, double& time_s) {
+/// Decimals of a second behind ".", "," or ":"; 0: none.
+double take_fraction(std::string_view& text) {
+  const bool mark =
+      text.size() > 1 && (text.front() == '.' || text.front() == ',' || text.front() == ':');
+  if (!mark || !is_digit(text[1])) return 0.0;
+  text.remove_prefix(1);
+  double fraction = 0.0;
+  double digit = 0.1;
+  while (!text.empty() && is_digit(text.front())) {
+    fraction += digit * (text.front() - '0');
+    digit *= 0.1;
+    text.remove_prefix(1);
+  }
+  return fraction;
+}
+
+/// "12:34:56.789", "12:34:56,789", "1:02:03 PM"; the rest stays in `text`. `elapsed`: a duration,
+/// which may have any number of hours.
+bool take_time_of_day(std::string_view& text, double& time_s, bool elapsed = false) {
   std::int64_t hours = 0;
   std::int64_t minutes = 0;
   std::int64_t seconds = 0;
-  if (!take_integer(text, 1, 2, hours) || !take_char(text, ':') ||
+  if (!take_integer(text, 1, elapsed ? 5 : 2, hours) || !take_char(text, ':') ||
       !take_integer(text, 2, 2, minutes) || !take_char(text, ':') ||
       !take_integer(text, 2, 2, seconds)) {
     return false;
   }
-  double fraction = 0.0;
-  if (!text.empty() && (text.front() == '.' || text.front() == ',' || text.front() == ':') &&
-      text.size() > 1 && is_digit(text[1])) {
-    text.remove_prefix(1);
-    double digit = 0.1;
-    while (!text.empty() && is_digit(text.front())) {
-      fraction += digit * (text.front() - '0');
-      digit *= 0.1;
-      text.remove_prefix(1);
-    }
-  }
-  if (hours > 24 || minutes > 59 || seconds > 60) return false;
+  const double fraction = take_fraction(text);
+  if ((hours > 24 && !elapsed) || minutes > 59 || seconds > 60) return false;
   std::string_view rest = trimmed(text);
   const std::string half = lower(rest.substr(0, 2));
   if (half == "pm" || half == "am") {
@@ -69,6 +76,24 @@ bool take_time_of_day(std::string_view& text, double& time_s) {
     text = rest;
   }
   time_s = static_cast<double>(hours * 3600 + minutes * 60 + seconds) + fraction;
+  return true;
+}
+
+/// "05:03.5", minutes and seconds as Excel shows them; without decimals they may be hours and
+/// minutes.
+bool take_minutes(std::string_view& text, double& time_s) {
+  std::int64_t minutes = 0;
+  std::int64_t seconds = 0;
+  std::string_view rest = text;
+  if (!take_integer(rest, 1, 4, minutes) || !take_char(rest, ':') ||
+      !take_integer(rest, 2, 2, seconds) || seconds > 59) {
+    return false;
+  }
+  if (rest.size() < 2 || rest.front() == ':' || !is_digit(rest[1])) return false;
+  const double fraction = take_fraction(rest);
+  if (!rest.empty()) return false;
+  time_s = static_cast<double>(60 * minutes + seconds) + fraction;
+  text = rest;
   return true;
 }
 
@@ -147,7 +172,7 @@ bool take_date(std::string_view& text, std::int64_t& days) {
 }  // namespace
 
 bool parse_clock(std::string_view field, double& time_s) {
-  if (field.size() < 7 || field.size() > 40 || !is_digit(field.front())) return false;
+  if (field.size() < 6 || field.size() > 40 || !is_digit(field.front())) return false;
   std::string_view text = field;
   std::int64_t days = 0;
   double seconds = 0.0;
@@ -157,7 +182,7 @@ bool parse_clock(std::string_view field, double& time_s) {
     if (!text.empty() && (text.front() == 'T' || text.front() == ' ')) text.remove_prefix(1);
     text = trimmed(text);
     if (text.empty() || !take_time_of_day(text, seconds)) return false;
-  } else if (!take_time_of_day(text, seconds)) {
+  } else if (!take_minutes(text, seconds) && !take_time_of_day(text, seconds, true)) {
     return false;
   }
   text = trimmed(text);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "config/record/clock_text.h"
+#include "config/record/layout.h"
 #include "config/record/text_fields.h"
 #include "config/schema/error.h"
 
@@ -17,8 +18,16 @@ namespace {
 
 using schema::bad_data;
 
+/// "2024-05-01", "01.05.2024": a word beside the times of day.
+bool is_date(std::string_view field) {
+  constexpr std::size_t kShortest = 8;
+  double time_s = 0.0;
+  return field.size() >= kShortest && parse_clock(std::string(field) + " 00:00:00", time_s);
+}
+
 /// Looks like a number that was cut apart or is written another way: no name of anything.
 bool is_garbled(std::string_view field) {
+  if (is_date(field)) return false;
   bool digit = false;
   for (const char c : field) {
     digit = digit || is_digit(c);
@@ -292,8 +301,17 @@ NearRow near_row(const std::vector<TextLine>& lines, const std::vector<TextDiale
     double value = 0.0;
     const bool two =
         parse_number(without_unit(near.field), near.dialect.decimal, value, LoneGroup::thousands);
-    throw bad_data(name + ":" + std::to_string(near.line + 1),
-                   "'" + near.field + "' " + (two ? "has two readings" : "is no number") +
+    const std::string where = name + ":" + std::to_string(near.line + 1);
+    double seconds = 0.0;
+    if (near.field.find(':') != std::string::npos && parse_clock(near.field + ".0", seconds)) {
+      throw bad_data(where,
+                     record::quoted(near.field) +
+                         " has two readings, hours and minutes or minutes "
+                         "and seconds",
+                     "seconds, hh:mm:ss or mm:ss.0");
+    }
+    throw bad_data(where,
+                   record::quoted(near.field) + " " + (two ? "has two readings" : "is no number") +
                        " where " + words(near.dialect) + " are written",
                    two ? kOneReading : "one way of writing numbers in all columns");
   }

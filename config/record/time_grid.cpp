@@ -72,6 +72,19 @@ constexpr double kLargestJitter = 0.5;
 /// Greatest error in ticks of the clock that rounded the times: half a tick, and the grid's own.
 constexpr double kLargestRounding = 0.75;
 constexpr std::size_t kFewestForNominal = 10;
+/// Rows within whole ticks of a clock that several share, for an error of the rate below 0.25 %.
+constexpr double kFewestInTicks = 400.0;
+
+/// The period of rows that share ticks: over whole ticks alone, as the first and the last are cut
+/// off anywhere. 0: too few rows.
+double period_in_ticks(const std::vector<double>& t_s, const std::vector<double>& index) {
+  std::size_t first = 1;
+  std::size_t last = t_s.size() - 1;
+  while (first < last && t_s[first] == t_s[first - 1]) ++first;
+  while (first < last && t_s[last] == t_s[last - 1]) --last;
+  const double rows = index[last] - index[first];
+  return rows >= kFewestInTicks ? (t_s[last] - t_s[first]) / rows : 0.0;
+}
 
 /// The tick of a clock that all steps are whole numbers of; 0: none is coarse enough to matter.
 double tick_of(const std::vector<double>& t_s, double mean_step_s) {
@@ -158,7 +171,8 @@ std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s) {
       covariance += (index[i] - mean_index) * (t_s[i] - t_s.front() - mean_t_s);
       variance += (index[i] - mean_index) * (index[i] - mean_index);
     }
-    period_s = covariance / variance;
+    period_s = several_a_tick ? period_in_ticks(t_s, index) : covariance / variance;
+    if (!(period_s > 0.0)) return std::nullopt;
     begin_s = t_s.front() + mean_t_s - period_s * mean_index;
   }
   if (!(period_s > 0.0)) return std::nullopt;

@@ -95,6 +95,14 @@ TEST(Clock, CountsSecondsOfDatesAndTimes) {
   EXPECT_NEAR(b - a, 86400.0 + 0.75, 1e-6);
   EXPECT_TRUE(parse_clock("1 days 00:00:01.005000", a));
   EXPECT_NEAR(a, 86401.005, 1e-9);
+  EXPECT_TRUE(parse_clock("05:03.5", a));  // minutes and seconds
+  EXPECT_NEAR(a, 303.5, 1e-9);
+  EXPECT_TRUE(parse_clock("90:00,25", a));
+  EXPECT_NEAR(a, 5400.25, 1e-9);
+  EXPECT_FALSE(parse_clock("05:03", a));      // or hours and minutes
+  EXPECT_TRUE(parse_clock("30:00:01.5", a));  // a duration
+  EXPECT_NEAR(a, 108001.5, 1e-9);
+  EXPECT_FALSE(parse_clock("2024-05-01 30:00:01", a));
   EXPECT_FALSE(parse_clock("28-Foo-2024 23:59:59", a));
   EXPECT_FALSE(parse_clock("0 daze 00:00:01", a));
   EXPECT_FALSE(parse_clock("2024-13-01 00:00:00", a));
@@ -273,6 +281,22 @@ TEST(TimeGrid, OfJitteringTimesKeepsTheirGaps) {
   EXPECT_NEAR(grid->grid.sample_time_s, 0.005, 1e-6);
   EXPECT_THAT(grid->grid.gaps, ElementsAre(400U));
   EXPECT_NEAR(grid->t_s[400] - grid->t_s[399], 38 * 0.005, 1e-5);
+}
+
+TEST(TimeGrid, OfRowsThatShareTicksIsCountedOverWholeTicks) {
+  const auto ticking = [](int rows, double tick_s, double begin_s) {
+    std::vector<double> t_s;
+    for (int k = 0; k < rows; ++k) {
+      t_s.push_back(std::floor((k / 200.0 + begin_s) / tick_s + 1e-9) * tick_s);
+    }
+    return find_nominal_grid(t_s);
+  };
+  for (const double begin_s : {0.0, 0.033, 0.07}) {
+    const auto grid = ticking(500, 0.1, begin_s);
+    ASSERT_TRUE(grid) << begin_s;
+    EXPECT_NEAR(grid->grid.sample_time_s, 0.005, 1e-9) << begin_s;
+  }
+  EXPECT_FALSE(ticking(500, 1.0, 0.3));  // 200 rows within whole ticks
 }
 
 TEST(TimeGrid, IsNoneForTimesThatDriftOrAreLostInAPattern) {
