@@ -141,7 +141,9 @@ class Understanding {
     if (!column.numbers && !column.clock) {
       problems_.push_back(noun() + column.header + " holds text, not numbers");
     }
-    if (role != Role::further && !unit.known()) {
+    if (!stated && !term.stated && !column.scale.empty()) {
+      problems_.push_back(noun() + column.header + " " + column.scale);
+    } else if (role != Role::further && !unit.known()) {
       problems_.push_back(
           noun() + column.header +
           (unit.text.empty() ? " has no unit" : " has the unknown unit " + unit.text));
@@ -212,6 +214,10 @@ class Understanding {
     if (role == Role::time && (column.clock || (unit.text.empty() && head_.time_in_s))) {
       unit = parse_unit("s");
     }
+    if (!column.scale.empty()) {
+      problems_.push_back(noun() + column.header + " " + column.scale);
+      return;
+    }
     if (!unit.known()) {
       problems_.push_back(
           noun() + column.header +
@@ -239,7 +245,18 @@ class Understanding {
     }
     if (role == Role::position && position_optional_) return;
     problems_.push_back(std::string("lacks a ") + kRoleWords[index_of(role)] + " " +
-                        (head_.variables ? "variable" : "column"));
+                        (head_.variables ? "variable" : "column") +
+                        (role == Role::command ? spool_words() : ""));
+  }
+
+  /// The way out where a spool's position alone could stand for the command.
+  [[nodiscard]] std::string spool_words() const {
+    for (const ReadColumn& column : columns_) {
+      if (!is_spool(column) || !is_plain(column) || !column.numbers) continue;
+      return " (" + column.header +
+             " is the measured spool; as the command it leaves out the valve's dynamics)";
+    }
+    return "";
   }
 
   void add_further() {
@@ -330,7 +347,14 @@ Layout understand(const FileHead& head, const std::vector<MapEntry>& map, bool p
     }
     if (auto layout = plain_layout(names, units, head.where)) {
       for (const Channel& channel : layout->channels) {
-        if (channel.role == Role::further || head.columns[channel.column].numbers) continue;
+        const FileColumn& column = head.columns[channel.column];
+        if (channel.role != Role::further && !column.factor.empty()) {
+          throw bad_data(head.where, "column " + names[channel.column] + " " + column.factor,
+                         "--map with FACTOR 1 or the one that is stated: " +
+                             std::string(kRoleKeys[index_of(channel.role)]) + "=" +
+                             names[channel.column] + "*FACTOR");
+        }
+        if (channel.role == Role::further || column.numbers) continue;
         throw bad_data(head.where, "column " + names[channel.column] + " holds text, not numbers");
       }
       std::erase_if(layout->channels,

@@ -16,6 +16,7 @@ namespace config::record {
 struct FileColumn {
   std::string header;  ///< as in the file; empty: the file has no header
   std::string unit;    ///< from a line of units or an attribute; empty: none
+  std::string factor;  ///< "has 'Factor' 0.001 in line 3": stated above the numbers; empty: none
   bool numbers = true;
   bool setting = false;        ///< its numbers with units hardly differ: perhaps no measurement
   bool clock = false;          ///< date and time, or time of day: already in s

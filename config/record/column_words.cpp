@@ -4,6 +4,7 @@
 #include <cctype>
 #include <utility>
 
+#include "config/record/text_fields.h"
 #include "config/record/unit_cells.h"
 
 namespace config::record {
@@ -45,33 +46,77 @@ bool has_word(const std::vector<std::string>& words, const Words& wanted) {
   return false;
 }
 
-const Words kTimeWords{"t",        "time",  "zeit", "timestamp*", "zeitstempel*", "elapsed*",
-                       "sekunden", "temps", "tid",  "tiempo",     "messzeit*",    "abtastzeit"};
+const Words kTimeWords{"t",        "time",     "zeit",      "timestamp*", "zeitstempel*",
+                       "elapsed*", "sekunden", "temps",     "tid",        "tiempo",
+                       "tempo",    "tijd",     "messzeit*", "abtastzeit", "prüfzeit"};
 const Words kNoTimeWords{"cycle",  "task", "exec",     "execution", "delay", "turnaround",
                          "jitter", "rise", "settling", "dead",      "step",  "sample"};
-const Words kCommandWords{
-    "u",          "command*", "cmd",        "stell*", "kommando*", "befehl*",     "commande",
-    "ansteuer*",  "control",  "controller", "ctrl",   "drive",     "manipulated", "valve",
-    "servovalve", "ventil*",  "regler*",    "dac",    "ao",        "input",       "eingang*"};
+const Words kCommandWords{"u",
+                          "command*",
+                          "cmd",
+                          "stell*",
+                          "kommando*",
+                          "befehl*",
+                          "commande",
+                          "ansteuer*",
+                          "control",
+                          "controller",
+                          "ctrl",
+                          "drive",
+                          "manipulated",
+                          "valve",
+                          "servovalve",
+                          "ventil*",
+                          "regler*",
+                          "dac",
+                          "ao",
+                          "input",
+                          "eingang*",
+                          "comando",
+                          "mando",
+                          "steuerspannung*",
+                          "steuersignal*",
+                          "steuerstrom*",
+                          "sterownik*",
+                          "styr*"};
 const Words kWeakCommandWords{"voltage*", "spannung*", "volt",   "volts",  "current*", "strom*",
                               "torque*",  "moment*",   "force*", "kraft*", "pwm",      "duty"};
 const Words kPositionWords{
-    "y",    "pos",    "position*", "displacement*", "stroke",   "weg",     "wegauf*", "hub",
-    "lage", "rod",    "piston*",   "kolben*",       "angle",    "winkel*", "theta",   "encoder*",
-    "lvdt", "travel", "extension", "istwert",       "rotation", "posicion"};
+    "y",        "pos",       "position*", "displacement*", "stroke",   "weg*",     "hub",
+    "lage",     "rod",       "piston*",   "kolben*",       "angle",    "winkel*",  "theta",
+    "encoder*", "lvdt",      "travel",    "extension",     "istwert",  "rotation", "posicion",
+    "posición", "posizione", "corsa",     "stellung*",     "opening*", "öffnung*", "läge",
+    "lageist*", "positie",   "course",    "déplacement"};
 const Words kWeakPositionWords{"x", "output", "ausgang*", "out", "phi", "measured", "ist"};
-const Words kReferenceWords{"ref",     "reference*", "setpoint*", "sp",        "soll*",
-                            "target*", "demand*",    "desired",   "nominal*",  "wanted",
-                            "set",     "des",        "sollwert*", "fuehrung*", "führung*"};
-const Words kOtherWords{"error*", "err",      "fehler*",   "deviation", "abweich*",  "velocity*",
-                        "vel",    "speed*",   "geschw*",   "accel*",    "pressure*", "druck*",
-                        "temp*",  "supply",   "limit",     "min",       "max",       "model*",
-                        "sim*",   "estimat*", "observer*", "offset",    "status",    "tank"};
+const Words kReferenceWords{
+    "ref",      "reference*",  "setpoint*", "sp",       "soll*",     "target*",   "demand*",
+    "desired",  "nominal*",    "wanted",    "set",      "des",       "sollwert*", "fuehrung*",
+    "führung*", "req",         "request*",  "vorgabe*", "consigne*", "consigna*", "cible",
+    "objetivo", "riferimento", "börvärde*", "gewenst*", "planned",   "profile",   "trajectory",
+    "traj",     "interpolat*", "commanded", "wunsch*",  "preset",    "virtual",   "yref",
+    "xref",     "posref",      "yset",      "xset",     "posset",    "ysp",       "ydes",
+    "xdes",     "posdes",      "yd",        "xd"};
+const Words kOtherWords{
+    "error*",  "err",    "fehler*",   "deviation", "abweich*",  "velocity*", "vel",    "speed*",
+    "geschw*", "accel*", "pressure*", "druck*",    "temp*",     "supply",    "limit",  "min",
+    "max",     "model*", "sim*",      "estimat*",  "observer*", "offset",    "status", "tank",
+    "diff*",   "delta",  "lag",       "following", "tolerance", "toleranz*", "window", "predict*",
+    "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
 const Words kPressureWords{"pressure*", "press", "druck*"};
 /// Of the valve, whose position is not the rod's and whose reading is no command.
-const Words kSpoolWords{"spool*", "schieber*"};
+const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
+const Words kValveWords{"valve*", "servovalve", "ventil*", "sv"};
+/// Of a voltage, current or force that drives nothing.
+const Words kNoDriveWords{"battery", "batterie*", "dc",       "bus",     "link",   "zwischenkreis*",
+                          "mains",   "netz*",     "versorg*", "sensor*", "bridge", "excitation",
+                          "brake",   "bremse*",   "load*",    "last*",   "cell"};
+/// Of a valve's signal that is none of its sensor's.
+const Words kOrderWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
+                        "commande", "ansteuer*", "ctrl",     "controller", "dac",
+                        "ao",       "input",     "eingang*", "stellgr*",   "mando",
+                        "comando",  "control",   "output",   "out"};
 
 constexpr int kCanonical = 100;
 constexpr int kStrong = 50;
@@ -129,10 +174,18 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
         }
       }
     }
+    if (read.text.scaled) read.text.unit = {};
+    if (read.text.scaled || (!unit.known() && is_scaled_unit(unit.text))) {
+      read.scale = "has a scale that reads in two ways";
+    }
+    if (!column.factor.empty()) {
+      read.scale += (read.scale.empty() ? "" : " and ") + column.factor;
+    }
     // In a path within a model only the last part says what the signal is.
     const std::string& name = read.text.name;
     const std::size_t part = name.find_last_of("/\\:.");
-    const bool path = part != std::string::npos && part + 1 < name.size();
+    const bool path = part != std::string::npos && part + 1 < name.size() &&
+                      !is_blank(name[part + 1]) && !is_digit(name[part + 1]);
     read.words = words_of(path ? name.substr(part + 1) : name);
     read.named = !column.header.empty();
     read.numbers = column.numbers;
@@ -174,7 +227,33 @@ bool has_stem_of(Role role, const ReadColumn& column) {
 
 bool names_reference(std::string_view name) { return has_word(words_of(name), kReferenceWords); }
 
-bool is_reference(const ReadColumn& column) { return has_word(column.words, kReferenceWords); }
+bool is_reference(const ReadColumn& column) {
+  const std::string name = folded(column.text.name);
+  return has_word(column.words, kReferenceWords) || name == "yd" || name == "xd";  // y_d
+}
+
+namespace {
+
+/// The command of a valve that a closed loop within it follows: "Valve setpoint [%]".
+bool is_valve_set_point(const ReadColumn& column) {
+  const bool other = has_word(column.words, kOtherWords) || has_word(column.words, kPositionWords);
+  return is_reference(column) && has_word(column.words, kValveWords) && !other &&
+         column.text.unit.known();
+}
+
+}  // namespace
+
+bool is_spool(const ReadColumn& column) {
+  const bool stage = has_word(column.words, {"main"}) && has_word(column.words, {"stage"});
+  if (stage || has_word(column.words, kSpoolWords)) return true;
+  if (!has_word(column.words, kValveWords) || has_word(column.words, kOrderWords)) return false;
+  if (has_word(column.words, kPositionWords)) return true;
+  return has_word(column.words, kMeasuredWords) && !has_word(column.words, kWeakCommandWords);
+}
+
+bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }
+
+bool is_measured(const ReadColumn& column) { return has_word(column.words, kMeasuredWords); }
 
 bool is_plain(const ReadColumn& column) {
   return !is_reference(column) && !has_word(column.words, kOtherWords);
@@ -198,16 +277,18 @@ int fit_of(Role role, const ReadColumn& column) {
     if (has_word(column.words, kTimeWords)) return kStrong;
     return unit.known() && increases(*column.sample) ? kWeak : 0;
   }
+  if (role == Role::command && is_valve_set_point(column)) return kStrong;
   if (!is_plain(column)) return 0;
-  const int measured = has_word(column.words, kMeasuredWords) ? 5 : 0;
-  const bool spool = has_word(column.words, kSpoolWords);
+  const int measured = is_measured(column) ? 5 : 0;
+  const bool spool = is_spool(column);
   if (role == Role::position && spool) return 0;
   if (role == Role::command) {
     const bool positional = has_word(column.words, kPositionWords);
     if (spool && (positional || measured > 0)) return 0;
     if (positional && !unit.known()) return 0;
     if (has_word(column.words, kCommandWords)) return kStrong;
-    return has_word(column.words, kWeakCommandWords) && !positional ? kWeak : 0;
+    const bool drives = !positional && !has_word(column.words, kNoDriveWords);
+    return drives && has_word(column.words, kWeakCommandWords) ? kWeak : 0;
   }
   if (!unit.known() && has_word(column.words, kCommandWords)) return 0;
   if (has_word(column.words, kCommandWords)) return 0;  // a commanded position is a reference

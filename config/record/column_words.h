@@ -24,6 +24,7 @@ struct ReadColumn {
   std::string header;  ///< for messages: as in the file, or its number
   HeaderText text;
   std::string conflict;  ///< the two units that header and line of units name; empty: one or none
+  std::string scale;     ///< "has a scale ...": a factor that a mapping has to state; empty: none
   std::vector<std::string> words;
   bool named = false;  ///< the file names it
   bool numbers = true;
@@ -53,6 +54,13 @@ struct ReadColumn {
 [[nodiscard]] bool is_reference(const ReadColumn& column);
 /// True where no word speaks of a set point or another quantity.
 [[nodiscard]] bool is_plain(const ReadColumn& column);
+
+/// True for the measured position of a valve's spool, which is neither the rod's nor a command.
+[[nodiscard]] bool is_spool(const ReadColumn& column);
+/// True where a word speaks of a command: a commanded position is no measured one.
+[[nodiscard]] bool is_commanded(const ReadColumn& column);
+/// True where a word speaks of a measurement.
+[[nodiscard]] bool is_measured(const ReadColumn& column);
 
 /// How many of time, command and position the words of headers name.
 [[nodiscard]] std::size_t roles_named(const std::vector<std::string>& headers);

@@ -18,6 +18,16 @@
 namespace config::record {
 namespace {
 
+/// "has 'Faktor' '0.001' in line 3"
+std::string factors_in(const std::vector<PassedLine>& stated) {
+  std::string words;
+  for (const PassedLine& factor : stated) {
+    words += (words.empty() ? "has " : " and ") + factor.text + " in line " +
+             std::to_string(factor.line);
+  }
+  return words;
+}
+
 FileHead columns_of(const TextForm& form, const std::string& name) {
   FileHead head;
   const std::size_t line = form.header_line > 0 ? form.header_line : form.data_line;
@@ -28,6 +38,7 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
     FileColumn column;
     if (!form.names.empty()) column.header = form.names[i];
     if (!form.units.empty()) column.unit = form.units[i];
+    if (!form.factors.empty()) column.factor = factors_in(form.factors[i]);
     if (form.cell_units[i].any()) column.unit = form.cell_units[i].unit().text;
     column.numbers = form.kinds[i] == FieldKind::number ||
                      (form.kinds[i] == FieldKind::missing && !column.header.empty());
@@ -130,9 +141,9 @@ std::string leave_out_ambiguous(const TextForm& form, const std::string& name, L
     if (!is_ambiguous(column)) return false;
     if (channel.role != Role::further) {
       throw schema::bad_data(name + ":" + std::to_string(form.data_line),
-                             "column " + column_words(form, column) + ": '" +
-                                 form.decimals[column].ambiguous +
-                                 "' has two readings, with a decimal comma or with thousands",
+                             "column " + column_words(form, column) + ": " +
+                                 record::quoted(form.decimals[column].ambiguous) +
+                                 " has two readings, with a decimal comma or with thousands",
                              kOneReading);
     }
     left_out += (left_out.empty() ? "" : ", ") + column_words(form, column);
@@ -154,6 +165,9 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
     if (passed > 0 && *line > 0) ++*line;
   }
   for (PassedLine& line : form.passed) line.line += passed > 0 ? 1 : 0;
+  for (std::vector<PassedLine>& factors : form.factors) {
+    for (PassedLine& factor : factors) factor.line += passed > 0 ? 1 : 0;
+  }
   const FileHead head = columns_of(form, name);
   Layout layout = understand(head, map, options.position_optional);
   const std::string left_out = leave_out_ambiguous(form, name, layout);
@@ -195,6 +209,10 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
   if (!settings.empty()) record.notes.push_back("left out, not all numbers: " + settings);
   if (!form.passed.empty()) {
     record.notes.push_back("left out, neither names nor a row: " + lines_in(form.passed));
+  }
+  if (const auto& [line, comment] = rows.comment(); line > 0) {
+    record.notes.push_back("a comment below the first row is left out: line " +
+                           std::to_string(line) + " " + record::quoted(comment));
   }
   if (!left_out.empty()) {
     record.notes.push_back("left out, '1,234' there has two readings: " + left_out);

@@ -184,9 +184,11 @@ double largest_plausible(std::string_view si_unit) noexcept {
     std::string_view si_unit;
     double largest;
   };
-  // Seconds since 1970 are below 1e10.
-  constexpr std::array kLimits{Limit{"s", 1e11},  Limit{"V", 1e6},   Limit{"m", 1e6},
-                               Limit{"mps", 1e6}, Limit{"Pa", 1e12}, Limit{"N", 1e12}};
+  // Seconds since 1970 are below 1e10. Instruments write 9.91e37 for an overflow.
+  constexpr std::array kLimits{Limit{"s", 1e11},  Limit{"V", 1e6},    Limit{"m", 1e6},
+                               Limit{"mps", 1e6}, Limit{"Pa", 1e12},  Limit{"N", 1e12},
+                               Limit{"A", 1e6},   Limit{"pct", 1e6},  Limit{"rad", 1e9},
+                               Limit{"Nm", 1e12}, Limit{"radps", 1e9}};
   for (const Limit& limit : kLimits) {
     if (limit.si_unit == si_unit) return limit.largest;
   }
@@ -202,11 +204,12 @@ std::string plausible_range(std::string_view si_unit) {
 
 std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
-  for (char& c : shown) {
+  std::string plain(text);
+  for (char& c : plain) {
     if (static_cast<unsigned char>(c) < ' ') c = '?';
   }
-  return "'" + shown + (text.size() > kLongest ? "...'" : "'");
+  plain = utf8_text(plain);
+  return "'" + std::string(cut_text(plain, kLongest)) + (plain.size() > kLongest ? "...'" : "'");
 }
 
 }  // namespace config::record

@@ -1,5 +1,5 @@
-// Lines of limits, ranges or scales among names, units and numbers: "min;-10;-100",
-// "[0..5];[-10..10];[-100..100]", "Scale;0.001;1".
+// Lines of limits, ranges or factors among names, units and numbers: "min;-10;-100",
+// "[0..5];[-10..10];[-100..100]", "Factor;1;0.001".
 #pragma once
 
 #include <string>
@@ -11,5 +11,10 @@ namespace config::record {
 /// or where a first word says what the numbers behind it limit or scale. Empty fields count for
 /// nothing.
 [[nodiscard]] bool is_limit_line(const std::vector<std::string>& fields, char decimal);
+
+/// For each field, "'Faktor' '0.001'" where the line states factors or offsets that change a
+/// number; empty where not. No element for a line of another kind.
+[[nodiscard]] std::vector<std::string> stated_factors(const std::vector<std::string>& fields,
+                                                      char decimal);
 
 }  // namespace config::record

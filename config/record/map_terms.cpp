@@ -75,7 +75,7 @@ std::optional<MapTerm> map_term(const std::vector<ReadColumn>& columns, const st
                         double offset) -> std::optional<MapTerm> {
     const auto column = column_named(columns, where, name);
     if (!column) return std::nullopt;
-    return MapTerm{*column, factor, offset};
+    return MapTerm{*column, factor, offset, name != text && "-" + name != text};
   };
   for (const double sign : {1.0, -1.0}) {
     std::string whole = text;

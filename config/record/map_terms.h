@@ -15,6 +15,7 @@ struct MapTerm {
   std::size_t column = 0;  ///< from 0
   double factor = 1.0;
   double offset = 0.0;
+  bool stated = false;  ///< a factor or an offset is typed, be it 1 or 0
 };
 
 /// The column of that header, name or number. Throws schema::DataError at `where` for a name of

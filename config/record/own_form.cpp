@@ -8,6 +8,7 @@
 #include "config/record/text_fields.h"
 #include "config/record/unit_cells.h"
 #include "config/record/unit_line.h"
+#include "config/record/unit_text.h"
 
 namespace config::record {
 namespace {
@@ -70,6 +71,7 @@ std::optional<TextForm> own_form(std::string_view text, const std::vector<TextLi
   TextForm form;
   form.header_line = 1;
   form.names = names;
+  for (std::string& name : form.names) name = utf8_text(name);
   form.kinds.assign(names.size(), FieldKind::number);
   form.head.resize(names.size());
   form.decimals.resize(names.size());

@@ -60,11 +60,52 @@ bool counts_tenths_of_us(const ReadColumn& column) {
          column.sample->front() < 5e17;
 }
 
+/// Serial dates of spreadsheets and MATLAB: days, with times as their decimals.
+bool counts_days(const ReadColumn& column) {
+  constexpr double kStep = 0.01;
+  const std::vector<double>& sample = *column.sample;
+  if (column.text.unit.known() || column.clock || sample.size() < 2) return false;
+  const double first = sample.front();
+  const bool day = (first > 2e4 && first < 8e4) || (first > 7e5 && first < 8e5);
+  return day && sample[1] - first < kStep;
+}
+
+/// "Position 50 mm/V": the header states a sensor's sensitivity.
+bool states_sensitivity(const std::string& header) {
+  constexpr std::array<std::string_view, 6> kPer{"/V", "/mV", "/A", "/mA", "/inc", "/digit"};
+  return std::any_of(kPer.begin(), kPer.end(), [&](std::string_view per) {
+    const std::size_t at = header.find(per);
+    return at != std::string::npos && header.find_first_of("0123456789") < at;
+  });
+}
+
 /// Numbers of samples, where another period is stated.
 bool is_counter(const ReadColumn& column, double step_s) {
   const std::vector<double>& sample = *column.sample;
   return !column.text.unit.known() && !column.clock && sample.size() > 1 &&
          sample[1] - sample[0] == 1.0 && step_s != 1.0;
+}
+
+/// How likely a column is the one, without its name being certain; 0: not at all.
+int likelihood(Role role, const ReadColumn& column) {
+  const std::string& si = column.text.unit.si;
+  if (si == "s" || column.clock || !is_plain(column)) return 0;
+  if (is_spool(column)) return role == Role::command ? 2 : 0;
+  if (!column.text.unit.known() && increases(*column.sample)) return 1;  // a time, a counter
+  const bool right = fits(role, si);
+  if (role == Role::position) {
+    if (is_commanded(column)) return 0;
+    const bool other = column.text.unit.known() && !right && si != "V" && si != "A" && si != "1";
+    return (other ? 1 : right ? 4 : 2) + (is_measured(column) ? 1 : 0);
+  }
+  const bool usual = si == "V" || si == "A" || si == "pct";
+  const bool length = si == "m" || si == "rad";
+  return (length                     ? 1
+          : usual                    ? 5
+          : right                    ? 4
+          : column.text.unit.known() ? 1
+                                     : 3) +
+         (is_commanded(column) ? 4 : 0);
 }
 
 std::string probable_unit(Role role, const ReadColumn& column) {
@@ -91,7 +132,7 @@ std::string listing(const FileHead& head, const std::vector<ReadColumn>& columns
   for (std::size_t i = 0; i < std::min(kMost, columns.size()); ++i) {
     const bool named = columns[i].named;
     std::string name = columns[i].header;
-    if (name.size() > 40) name = name.substr(0, 37) + "...";
+    if (name.size() > 40) name = std::string(cut_text(name, 37)) + "...";
     if (i > 0) text += ", ";
     if (!named) {
       text += std::to_string(i + 1);
@@ -117,25 +158,32 @@ std::string probable_map(const std::vector<ReadColumn>& columns,
   for (const std::optional<std::size_t>& column : known) {
     if (column) used.insert(*column);
   }
-  const auto pick = [&](Role role, const auto& good) {
+  const auto pick = [&](Role role, const auto& points) {
     const std::size_t r = index_of(role);
     if (chosen[r] || (role == Role::time && has_rate)) return;
+    int most = 0;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (used.contains(i) || !columns[i].numbers || !good(columns[i])) continue;
+      if (used.contains(i) || !columns[i].numbers || points(columns[i]) <= most) continue;
       chosen[r] = i;
-      used.insert(i);
-      return;
+      most = points(columns[i]);
     }
+    if (chosen[r]) used.insert(*chosen[r]);
   };
-  pick(Role::time, [](const ReadColumn& c) { return increases(*c.sample); });
+  const auto likely = [](Role role) {
+    return [role](const ReadColumn& column) { return likelihood(role, column); };
+  };
   const auto fitting = [](Role role) {
-    return [role](const ReadColumn& c) { return fits(role, c.text.unit.si); };
+    return [role](const ReadColumn& column) {
+      return fits(role, column.text.unit.si) ? likelihood(role, column) : 0;
+    };
   };
-  const auto plain = [](const ReadColumn& c) { return c.text.unit.si != "s" && is_plain(c); };
+  pick(Role::time, [](const ReadColumn& c) {
+    if (!increases(*c.sample) || (c.text.unit.known() && c.text.unit.si != "s")) return 0;
+    return c.text.unit.si == "s" ? 2 : 1;
+  });
   pick(Role::position, fitting(Role::position));
-  pick(Role::command, fitting(Role::command));
-  pick(Role::command, plain);
-  pick(Role::position, plain);
+  pick(Role::command, likely(Role::command));
+  pick(Role::position, likely(Role::position));
   std::string map;
   for (const Role role : kMainRoles) {
     const std::size_t r = index_of(role);
@@ -148,14 +196,28 @@ std::string probable_map(const std::vector<ReadColumn>& columns,
       map += fmt::format("{:.9g}s", stated_step_s);
       continue;
     }
-    if (!chosen[r]) {
+    const bool counter = role == Role::time && chosen[r] && is_counter(columns[*chosen[r]], 0.0) &&
+                         score(role, columns[*chosen[r]]) == 0;
+    if (!chosen[r] || counter) {
       map += role == Role::time ? "RATEHz" : "COLUMN[UNIT]";
       continue;
     }
-    map += typed(columns, *chosen[r]);
     const ReadColumn& column = columns[*chosen[r]];
+    const bool unknown = !column.text.unit.text.empty() && !column.text.unit.known();
+    if (!column.scale.empty() || (unknown && !counts_days(column)) ||
+        (role != Role::time && states_sensitivity(column.header))) {
+      const bool right = fits(role, column.text.unit.si);
+      map += std::to_string(*chosen[r] + 1) + "*FACTOR[" +
+             (right ? column.text.unit.text : probable_unit(role, column)) + "]";
+      continue;
+    }
+    map += typed(columns, *chosen[r]);
     if (role == Role::time && counts_tenths_of_us(column)) {
       map += "*1e-7[s]";
+      continue;
+    }
+    if (role == Role::time && counts_days(column)) {
+      map += "*86400[s]";
       continue;
     }
     const bool stated = fits(role, column.text.unit.si) || (role == Role::time && column.clock);

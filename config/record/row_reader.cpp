@@ -132,6 +132,7 @@ inline bool RowReader::is_row() {
     }
     if (line.front() == 'E') return true;
     passed_.emplace_back(rows_, 1);
+    if (rows_ > 0 && comment_.first == 0) comment_ = {line_, std::string(line)};
     ++line_;
     at_ = line_end == end_ ? end_ : line_end + 1;
   } while (has_line());

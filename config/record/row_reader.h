@@ -43,6 +43,9 @@ class RowReader {
   /// Line of the first cell of a setting that is no number; 0: there is none.
   [[nodiscard]] std::size_t left_out_at(std::size_t i) const { return left_out_at_[i]; }
 
+  /// Line, from 1, and text of the first comment below a row; 0: there is none.
+  [[nodiscard]] const std::pair<std::size_t, std::string>& comment() const { return comment_; }
+
  private:
   void reserve();
 
@@ -101,6 +104,7 @@ class RowReader {
   std::vector<std::vector<double>> values_;
   std::vector<std::size_t> left_out_at_;
   std::vector<std::pair<std::size_t, std::size_t>> passed_;  ///< row, comments before it
+  std::pair<std::size_t, std::string> comment_;  ///< line and text of the first below a row
   std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
   double before_s_ = -std::numeric_limits<double>::infinity();
   double day_s_ = 0.0;

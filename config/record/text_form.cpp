@@ -10,6 +10,7 @@
 #include "config/record/layout.h"
 #include "config/record/limit_line.h"
 #include "config/record/own_form.h"
+#include "config/record/row_preamble.h"
 #include "config/record/stated_step.h"
 #include "config/record/text_fields.h"
 #include "config/record/unit_line.h"
@@ -41,7 +42,8 @@ class FormFinder {
       throw bad_data(name_, "is empty", "CSV with a header t_s,u_V,y_m");
     }
     if (std::optional<TextForm> own = own_form(text_, lines_)) return *std::move(own);
-    const TextTable table = find_table(lines_, name_);
+    TextTable table = find_table(lines_, name_);
+    take_preamble_rows(lines_, table);
     form_.dialect = table.dialect;
     form_.kinds = table.kinds;
     form_.head = table.head;
@@ -202,8 +204,12 @@ class FormFinder {
     }
     if (units != nullptr) {
       form_.units = units->names;
+      for (std::string& unit : form_.units) unit = clean_text(unit);
+      if (leads_units(form_.units.front())) form_.units.front().clear();
       form_.unit_line = units->line + 1;
     }
+    refuse_units_of_first_row(above);
+    note_factors();
     for (auto each = above.rbegin(); each != above.rend(); ++each) {  // in the order of the file
       const Candidate& candidate = *each;
       if (&candidate == units || candidate.commented) continue;
@@ -221,6 +227,35 @@ class FormFinder {
     form_.names = header->names;
     for (std::string& name : form_.names) name = clean_text(name);
     form_.header_line = header->line + 1;
+  }
+
+  /// Refuses a line of numbers with units between names and rows of numbers without.
+  void refuse_units_of_first_row(const std::vector<Candidate>& above) const {
+    if (above.size() < 2) return;
+    std::size_t with_unit = 0;
+    for (const std::string& field : above.front().names) {
+      if (!unit_cell(field) && !is_missing(field)) return;
+      with_unit += unit_cell(field) ? 1 : 0;
+    }
+    if (with_unit < 2) return;
+    throw bad_data(name_ + ":" + std::to_string(above.front().line + 1),
+                   record::quoted(trimmed(lines_[above.front().line].text)) +
+                       " has units in its cells, the rows below have none",
+                   kOneUnit);
+  }
+
+  /// Factors and offsets of the lines above the rows that have as many fields.
+  void note_factors() {
+    for (std::size_t i = 0; i < first_; ++i) {
+      std::vector<std::string> fields;
+      if (!names_in(without_comment_mark(lines_[i].text), fields)) continue;
+      const std::vector<std::string> stated = stated_factors(fields, form_.dialect.decimal);
+      if (stated.empty()) continue;
+      form_.factors.resize(form_.kinds.size());
+      for (std::size_t c = 0; c < stated.size(); ++c) {
+        if (!stated[c].empty()) form_.factors[c].push_back({i + 1, stated[c]});
+      }
+    }
   }
 
   [[nodiscard]] RowsBelow rows_below(bool named) const {

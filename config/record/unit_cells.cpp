@@ -39,7 +39,7 @@ std::optional<UnitCell> unit_cell(std::string_view field) {
   for (std::size_t end = 1; end < field.size(); ++end) {
     if (ends_number(field, end - 1)) return std::nullopt;
     if (!is_digit(field[end - 1]) || is_digit(field[end])) continue;
-    UnitText unit = parse_unit(unit_text_of(field.substr(end)));
+    UnitText unit = parse_plain_unit(unit_text_of(field.substr(end)));
     if (!unit.known() || unit.si == "1") continue;
     return UnitCell{field.substr(0, end), field.substr(end), std::move(unit)};
   }
@@ -58,7 +58,7 @@ std::optional<UnitText> missing_cell_unit(std::string_view field) {
     if (!blank && !is_blank(field[end - 1]) && !text.ends_with("nan") && !text.ends_with("--")) {
       continue;
     }
-    UnitText unit = parse_unit(unit_text_of(field.substr(end)));
+    UnitText unit = parse_plain_unit(unit_text_of(field.substr(end)));
     if (unit.known() && unit.si != "1") return unit;
   }
   return {};

@@ -1,5 +1,8 @@
 #include "config/record/unit_line.h"
 
+#include <algorithm>
+#include <array>
+
 #include "config/record/text_fields.h"
 #include "config/record/unit_text.h"
 
@@ -18,10 +21,22 @@ bool may_be_unit(const std::string& field) {
 
 }  // namespace
 
+bool leads_units(std::string_view field) {
+  constexpr std::array<std::string_view, 12> kWords{
+      "unit",   "units", "einheit",         "einheiten",        "unite", "unites",
+      "unidad", "unita", "engineeringunit", "engineeringunits", "eu",    "dimension"};
+  return std::find(kWords.begin(), kWords.end(), folded(field)) != kWords.end();
+}
+
 bool is_unit_line(const std::vector<std::string>& fields) {
   std::size_t known = 0;
   std::size_t unknown = 0;
   for (const std::string& field : fields) {
+    if (&field == &fields.front() && leads_units(field)) continue;
+    if (is_scaled_unit(field)) {
+      ++known;
+      continue;
+    }
     if (field.empty() || field == "-" || field == "[]" || field == "[-]" || field == "()") continue;
     const UnitText unit = parse_unit(field);
     if (!unit.known()) {

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "config/record/text_fields.h"
+#include "config/record/unit_scale.h"
 
 namespace config::record {
 namespace {
@@ -134,16 +135,25 @@ bool is_word_too(std::string_view unit, std::string_view name) {
   return true;
 }
 
-}  // namespace
-
-UnitText parse_unit(std::string_view text) {
+std::string_view without_brackets(std::string_view text) {
   text = trimmed(text);
   for (const std::string_view brackets : {"[]", "()", "{}", "<>"}) {
     if (text.size() >= 2 && text.front() == brackets[0] && text.back() == brackets[1]) {
-      text = trimmed(text.substr(1, text.size() - 2));
-      break;
+      return trimmed(text.substr(1, text.size() - 2));
     }
   }
+  return text;
+}
+
+bool is_unit(std::string_view text) {
+  const KnownUnit* const known = find_unit(text);
+  return known != nullptr && known->si != "1";
+}
+
+}  // namespace
+
+UnitText parse_plain_unit(std::string_view text) {
+  text = without_brackets(text);
   if (text.starts_with("in ") && text.size() > 3) text = trimmed(text.substr(3));
   UnitText unit;
   unit.text = std::string(text);
@@ -156,6 +166,25 @@ UnitText parse_unit(std::string_view text) {
   return unit;
 }
 
+UnitText parse_unit(std::string_view text) {
+  UnitText unit = parse_plain_unit(text);
+  if (unit.known()) return unit;
+  std::string plain = with_plain_exponents(unit.text);
+  replace_all(plain, "\xCE\xBC", "µ");
+  const UnitScale scale = unit_scale(plain);
+  if (!is_unit(scale.unit)) return unit;
+  const KnownUnit& scaled = *find_unit(scale.unit);
+  unit.si = std::string(scaled.si);
+  unit.factor = scale.factor * scaled.factor;
+  return unit;
+}
+
+bool is_scaled_unit(std::string_view text) {
+  std::string plain = with_plain_exponents(without_brackets(text));
+  replace_all(plain, "\xCE\xBC", "µ");
+  return !parse_unit(text).known() && has_open_scale(plain, is_unit);
+}
+
 std::string unit_words(std::string_view si) {
   if (si == "Nm") return "N m";
   if (si == "pct") return "%";
@@ -166,9 +195,10 @@ std::string unit_words(std::string_view si) {
   return std::string(si);
 }
 
-HeaderText parse_header(std::string_view text) {
-  const std::string header = clean_text(text);
-  const std::string_view whole = trimmed(header);
+namespace {
+
+/// Parts of a header that has no scale of several readings.
+HeaderText split_header(std::string_view whole) {
   const auto split = [&](std::size_t name_end, std::size_t unit_begin, bool only_known) {
     HeaderText result;
     result.name = std::string(trimmed(whole.substr(0, name_end)));
@@ -190,6 +220,11 @@ HeaderText parse_header(std::string_view text) {
     const std::size_t at = whole.rfind(between);
     if (at == std::string_view::npos) continue;
     HeaderText found = split(at, at + between.size(), true);
+    if (between == " " && !found.name.empty()) {  // "Position 0.1 mm"
+      const std::size_t scale = found.name.rfind(' ');
+      HeaderText scaled = scale == std::string::npos ? HeaderText{} : split(scale, scale, true);
+      if (!scaled.name.empty() && scaled.unit.text.find(' ') != std::string::npos) return scaled;
+    }
     // A single letter behind a blank is a letter: "Channel A".
     const bool letter = between == " " && found.unit.text.size() < 2 && found.unit.text != "%";
     const bool word = between == " " && is_word_too(found.unit.text, found.name);
@@ -219,6 +254,33 @@ HeaderText parse_header(std::string_view text) {
   return {std::string(whole), {}};
 }
 
+/// "Position 0.25" and "Position x" of "Position 0.25 mm" and "Position x 0.1 mm".
+bool ends_in_scale(std::string_view name) {
+  const std::size_t blank = name.rfind(' ');
+  if (blank == std::string_view::npos) return name.ends_with('*');
+  const std::string_view last = name.substr(blank + 1);
+  if (last == "x" || last.ends_with('*') || last == "\xC3\x97") return true;
+  double value = 0.0;
+  return last.find_first_of(".,") != std::string_view::npos &&
+         (parse_number(last, '.', value) || parse_number(last, ',', value));
+}
+
+}  // namespace
+
+HeaderText parse_header(std::string_view text) {
+  const std::string header = clean_text(text);
+  const std::string_view whole = trimmed(header);
+  HeaderText found = split_header(whole);
+  const bool apart =
+      whole.ends_with(']') || whole.ends_with(')') || whole.ends_with('}') || whole.ends_with('>');
+  const std::size_t open = apart ? whole.find_last_of("[({<") : std::string_view::npos;
+  const bool scaled = (open != std::string_view::npos && is_scaled_unit(whole.substr(open))) ||
+                      name_has_scale(with_plain_exponents(found.name)) ||
+                      (found.unit.known() && !apart && ends_in_scale(found.name));
+  if (scaled) return {std::string(whole), {}, true};
+  return found;
+}
+
 std::string one_unit_or_map(const std::string& column, const std::string& unit) {
   return "one unit, or the right one in --map: 'KEY=" + column + "[" + unit + "]'";
 }
@@ -234,6 +296,32 @@ std::string folded(std::string_view name) {
   return result;
 }
 
+std::string_view cut_text(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0U) == 0x80U) --bytes;
+  return text.substr(0, bytes);
+}
+
+std::string utf8_text(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t more = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : byte >= 0xC2 ? 1 : 0;
+    bool utf8 = byte < 0xF5 && i + more < text.size() && (more > 0 || byte < 0x80);
+    for (std::size_t k = 1; utf8 && k <= more; ++k) {
+      utf8 = (static_cast<unsigned char>(text[i + k]) & 0xC0U) == 0x80U;
+    }
+    if (utf8) {
+      result.append(text.substr(i, more + 1));
+      i += more;
+    } else {  // Latin-1: "µ" is one byte there, "°" another
+      result += static_cast<char>(0xC0U | (byte >> 6U));
+      result += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return result;
+}
+
 std::string clean_text(std::string_view text) {
   text = trimmed(text);
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
@@ -241,28 +329,10 @@ std::string clean_text(std::string_view text) {
   }
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte < 0x20) {
-      result += ' ';
-    } else if (byte < 0x80) {
-      if (text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') ++i;  // "" within quotes
-      result += text[i];
-    } else {
-      const std::size_t more = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : byte >= 0xC2 ? 1 : 0;
-      bool utf8 = more > 0 && i + more < text.size();
-      for (std::size_t k = 1; utf8 && k <= more; ++k) {
-        utf8 = (static_cast<unsigned char>(text[i + k]) & 0xC0U) == 0x80U;
-      }
-      if (utf8) {
-        result.append(text.substr(i, more + 1));
-        i += more;
-      } else {  // Latin-1: "µ" is one byte there, "°" another
-        result += static_cast<char>(0xC0U | (byte >> 6U));
-        result += static_cast<char>(0x80U | (byte & 0x3FU));
-      }
-    }
+    if (text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') ++i;  // "" within quotes
+    result += static_cast<unsigned char>(text[i]) < 0x20 ? ' ' : text[i];
   }
-  return result;
+  return utf8_text(result);
 }
 
 }  // namespace config::record

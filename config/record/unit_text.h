@@ -17,16 +17,24 @@ struct UnitText {
 };
 
 /// `text` may stand in brackets of any kind. Unknown units have an empty `si`. Upper and lower case
-/// count where they distinguish units (mPa, MPa; S, s).
+/// count where they distinguish units (mPa, MPa; S, s). A scale of one reading (unit_scale.h) may
+/// stand in front: "0.1 mm".
 [[nodiscard]] UnitText parse_unit(std::string_view text);
+
+/// The same without scales.
+[[nodiscard]] UnitText parse_plain_unit(std::string_view text);
+
+/// True for a known unit beside a scale of several readings: "mm*10".
+[[nodiscard]] bool is_scaled_unit(std::string_view text);
 
 /// "N m" for "Nm", "%" for "pct", "m3/s" for "m3ps": as text, from the ending of a column's name.
 [[nodiscard]] std::string unit_words(std::string_view si);
 
 /// A column's name and what its header says of the unit.
 struct HeaderText {
-  std::string name;  ///< "Position" of "Position [mm]"
-  UnitText unit;     ///< text empty: none is named
+  std::string name;     ///< "Position" of "Position [mm]"
+  UnitText unit;        ///< text empty: none is named
+  bool scaled = false;  ///< a scale of several readings: `name` is the whole header, without a unit
 };
 
 /// "Position [mm]", "Position (mm)", "Position / mm", "Position, mm", "Position in mm",
@@ -38,6 +46,12 @@ struct HeaderText {
 
 /// Names alike but for case, blanks and punctuation are equal: "Valve cmd" and "valve_cmd".
 [[nodiscard]] std::string folded(std::string_view name);
+
+/// Bytes that are no UTF-8 are Latin-1 and become UTF-8.
+[[nodiscard]] std::string utf8_text(std::string_view text);
+
+/// The first `bytes` of a UTF-8 text, or less: no character is cut.
+[[nodiscard]] std::string_view cut_text(std::string_view text, std::size_t bytes);
 
 /// Without blanks around, quotes and control characters; Latin-1 bytes become UTF-8.
 [[nodiscard]] std::string clean_text(std::string_view text);

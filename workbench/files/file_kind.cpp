@@ -29,6 +29,7 @@ FileKind kind_of(const std::string& file) {
     if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos || line[first] == '#') continue;
+    if (line.starts_with("sep=") || line.starts_with("\"sep=")) continue;  // Excel's first line
     if (line.size() > kLongest || line.find('\0') != std::string::npos) return FileKind::other;
     if (std::regex_match(line, toml_line)) return FileKind::toml;
     return std::regex_match(line, csv_line) ? FileKind::record : FileKind::other;

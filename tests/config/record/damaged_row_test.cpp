@@ -22,7 +22,7 @@ TEST(Csv, RefusesAFirstRowThatOneFieldDamages) {
   expect_bad("0,error,0.1\n0.005,2,0.2\n0.010,3,0.3\n", ":1", "column 2: 'error' is no number");
   // a row of words, or of scales that have words before them, is none
   EXPECT_EQ(read(names + "measured,commanded,measured\n" + kRows).t_s.size(), 3U);
-  EXPECT_EQ(read(names + "Scale,0.001,1\n" + kRows).t_s.size(), 3U);
+  EXPECT_EQ(read(names + "Scale,1,1.0\n" + kRows).t_s.size(), 3U);
   // nor is a row that was commented out
   EXPECT_EQ(read(names + "#0,error,0.1\n" + kRows).t_s.size(), 3U);
 }
@@ -68,7 +68,7 @@ TEST(Csv, NotesLinesBetweenNamesAndNumbersThatAreNoRows) {
   EXPECT_EQ(notes(names + "min;-10;-100\n" + units), begin + "line 2 'min;-10;-100'");
   for (const char* ranges :
        {"[0..5];[-10..10];[-100..100]", "0..5;-10..10;-100..100", "0 to 5;-10 to 10;0 - 600",
-        ";+/-10;\xC2\xB1 100", "Range;[-10, 10];", "Scale;1;0.001", "1;channel 2;channel 3",
+        ";+/-10;\xC2\xB1 100", "Range;[-10, 10];", "Scale;1;1", "1;channel 2;channel 3",
         ";valve amplifier, X3;rod sensor, X4"}) {
     EXPECT_EQ(notes(names + units + ranges + "\n"), begin + "line 3 '" + ranges + "'");
   }
