@@ -48,7 +48,7 @@ class Assembly {
       resample();
     }
     note_units();
-    note_constant_command();
+    note_constants();
     return std::move(record_);
   }
 
@@ -352,15 +352,21 @@ class Assembly {
     }
   }
 
-  void note_constant_command() {
-    const Values& u = record_.u_V;
-    const bool changes =
-        std::any_of(u.begin(), u.end(), [&u](double value) { return value != u.front(); });
-    if (u.empty() || changes || !record_.has_position) return;
-    record_.notes.push_back(
-        fmt::format("the command is {:.6g} {} throughout: nothing can be "
-                    "learned of its effect",
-                    u.front(), unit_words(record_.command_unit)));
+  void note_constants() {
+    const auto is_constant = [](const Values& values) {
+      return !values.empty() && std::all_of(values.begin(), values.end(),
+                                            [&](double value) { return value == values.front(); });
+    };
+    if (!record_.has_position) return;
+    if (is_constant(record_.u_V)) {
+      record_.notes.push_back(
+          fmt::format("the command is {:.6g} {} throughout: nothing can be learned of its effect",
+                      record_.u_V.front(), unit_words(record_.command_unit)));
+    }
+    if (is_constant(record_.y_m)) {
+      record_.notes.push_back(fmt::format("the position is {:.6g} {} throughout",
+                                          record_.y_m.front(), unit_words(record_.position_unit)));
+    }
   }
 
   const Layout& layout_;

@@ -1,6 +1,7 @@
 #include "config/record/column_words.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <utility>
 
@@ -228,8 +229,11 @@ bool has_stem_of(Role role, const ReadColumn& column) {
 bool names_reference(std::string_view name) { return has_word(words_of(name), kReferenceWords); }
 
 bool is_reference(const ReadColumn& column) {
+  // The letters of control engineering, alone: r and y_d, and w in German.
+  constexpr std::array<std::string_view, 4> kLetters{"r", "w", "yd", "xd"};
   const std::string name = folded(column.text.name);
-  return has_word(column.words, kReferenceWords) || name == "yd" || name == "xd";  // y_d
+  return has_word(column.words, kReferenceWords) ||
+         std::find(kLetters.begin(), kLetters.end(), name) != kLetters.end();
 }
 
 namespace {

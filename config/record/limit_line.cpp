@@ -84,14 +84,15 @@ bool is_offset_word(std::string_view field) {
 }
 
 /// "Factor", "Scale", "Gain [mm/V]": a number that multiplies. An oscilloscope's vertical scale is
-/// that of its screen.
+/// that of its screen, a controller's gain a setting.
 bool is_factor_word(std::string_view field) {
   constexpr std::array<std::string_view, 12> kParts{
       "factor", "faktor",      "facteur",         "gain", "scal", "skal", "multipli", "sensitiv",
       "slope",  "empfindlich", "verst\xC3\xA4rk", "ratio"};
-  constexpr std::array<std::string_view, 4> kScreen{"vertical", "horizontal", "vscale", "hscale"};
+  constexpr std::array<std::string_view, 6> kOthers{"vertical", "horizontal", "vscale",
+                                                    "hscale",   "controller", "regler"};
   const std::string word = folded(field);
-  return !is_limit_word(field) && has_any(word, kParts) && !has_any(word, kScreen);
+  return !is_limit_word(field) && has_any(word, kParts) && !has_any(word, kOthers);
 }
 
 }  // namespace

@@ -66,6 +66,9 @@ bool counts_days(const ReadColumn& column) {
   const std::vector<double>& sample = *column.sample;
   if (column.text.unit.known() || column.clock || sample.size() < 2) return false;
   const double first = sample.front();
+  // Within one day: no record in seconds has such steps.
+  constexpr double kShortest = 2e-6;
+  if (first >= 0.0 && first < 1.0) return sample[1] > first && sample[1] - first < kShortest;
   const bool day = (first > 2e4 && first < 8e4) || (first > 7e5 && first < 8e5);
   return day && sample[1] - first < kStep;
 }

@@ -91,17 +91,24 @@ std::string factor_words(const ChannelOrigin& origin) {
   return words;
 }
 
+/// Characters of a UTF-8 text.
+std::size_t length(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
 /// Columns of text, as wide as they must be.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], length(row[i]));
   }
   std::string text;
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      line += (i == 0 ? "  " : "   ") + row[i] + std::string(widths[i] - row[i].size(), ' ');
+      line += (i == 0 ? "  " : "   ") + row[i] + std::string(widths[i] - length(row[i]), ' ');
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   }

@@ -116,6 +116,8 @@ TEST(Csv, NotesACommandThatNeverChanges) {
   EXPECT_THAT(record.notes, ElementsAre("the command is 2.5 V throughout: nothing can be learned "
                                         "of its effect"));
   EXPECT_TRUE(read("t_s,u_V,y_m\n" + kRows).notes.empty());
+  EXPECT_THAT(read("t_s,u_V,y_m\n0,1,0.5\n0.005,2,0.5\n0.010,3,0.5\n").notes,
+              ElementsAre("the position is 0.5 m throughout"));
 }
 
 TEST(Csv, TakesRowsWithoutANumberForGaps) {

@@ -91,6 +91,7 @@ TEST(StatedFactors, AreThoseThatChangeANumber) {
   EXPECT_THAT(stated_factors({"max", "10", "600"}, '.'), IsEmpty());
   EXPECT_THAT(stated_factors({"Full scale", "10", "600"}, '.'), IsEmpty());
   EXPECT_THAT(stated_factors({"Vertical Scale", "2", "0.5"}, '.'), IsEmpty());  // of the screen
+  EXPECT_THAT(stated_factors({"Controller gain", "2", ""}, '.'), IsEmpty());    // a setting
 }
 
 TEST(StatedFactors, MayHaveUnitsOrNoWordInFront) {

@@ -97,6 +97,12 @@ def bad_serial_dates():
 
 
 @style()
+def bad_fractions_of_a_day():
+    return ("Time,Ventil [V],Weg [mm]\n" + rows([["%.12f" % (t / 86400) for t in T], U_V, Y_MM]),
+            refused("column Time has no unit", "t=Time*86400[s]"))
+
+
+@style()
 def bad_overflow_of_a_meter():
     u = ["9.91E+37" if k == 50 else "%.4f" % v for k, v in enumerate(U_V)]
     return "Time [s],Motor current [A],Position [mm]\n" + rows([T, u, Y_MM]), refused(":52:", "9.91e+37")

@@ -187,6 +187,17 @@ def bad_reference_of_one_word():
 
 
 @style()
+def references_of_one_letter():
+    return ("t [s];w [mm];x [mm];u [V]\n" + rows([T, [y + 1 for y in Y_MM], Y_MM, U_V], ";"),
+            truth(further={"reference_m": [1e-3 * (y + 1) for y in Y_MM]}, tolerance=1e-8))
+
+
+@style()
+def bad_reference_of_one_letter_alone():
+    return "t [s];w [mm];u [V]\n" + rows([T, Y_MM, U_V], ";"), refused("lacks a position", "y=COLUMN[UNIT]")
+
+
+@style()
 def bad_requested_position():
     return ("Time [s];Command [V];Position request [mm]\n" + rows([T, U_V, Y_MM], ";"),
             refused("lacks a position", "y=COLUMN[UNIT]"))
