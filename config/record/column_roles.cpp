@@ -265,17 +265,26 @@ class Understanding {
       (void)names.take(channel.name);
       layout_.channels.push_back(channel);
     }
+    const auto is_further = [this](std::size_t i) {
+      return !taken_.contains(i) && columns_[i].numbers && !columns_[i].clock;
+    };
+    // A name as this project writes it is kept: p_Pa behind "p [bar]".
+    std::vector<std::string> own(columns_.size());
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const RecordColumn old = parse_column(columns_[i].header);
+      const UnitText& unit = columns_[i].text.unit;
+      if (!is_further(i) || old.si_unit.empty()) continue;
+      if (old.si_unit == unit.si && old.factor == unit.factor) own[i] = names.take(old.si_name);
+    }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const ReadColumn& column = columns_[i];
-      if (taken_.contains(i) || !column.numbers || column.clock) continue;
+      if (!is_further(i)) continue;
       Channel channel;
       channel.column = i;
       channel.unit_text = column.text.unit.text;
-      const RecordColumn old = parse_column(column.header);
-      const bool own = old.si_unit == column.text.unit.si && old.factor == column.text.unit.factor;
-      if (!old.si_unit.empty() && own) {
-        channel.name = names.take(old.si_name);
-        channel.factor = old.factor;
+      if (!own[i].empty()) {
+        channel.name = own[i];
+        channel.factor = column.text.unit.factor;
       } else if (column.text.unit.known()) {
         channel.name =
             names.take_with_unit(column.text.name, column.text.unit.si, is_reference(column));

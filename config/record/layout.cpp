@@ -76,7 +76,7 @@ void refuse_clash(const std::vector<RecordColumn>& columns, const std::vector<st
     const bool same_stem = columns[i].stem == columns[j].stem && !columns[i].si_unit.empty() &&
                            !columns[j].si_unit.empty();
     if (same_stem && (main || columns[i].si_unit == columns[j].si_unit)) {
-      throw bad_data(where, "has contradictory units: " + both);
+      throw bad_data(where, "has contradictory units: " + both, "names that differ");
     }
   }
 }

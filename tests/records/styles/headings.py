@@ -322,6 +322,13 @@ def two_columns_and_a_label():
 
 
 @style()
-def own_pressure_beside_another_of_its_name():
+def bad_own_pressure_beside_another_of_its_name():
     return ("t_s,u_V,y_m,p_Pa,p [bar]\n" + rows([T, U_V, Y_M, [70e5] * len(T), [50.0] * len(T)]),
-            refused("p_Pa", "p [bar]"))
+            refused("contradictory units: p_Pa and p [bar]", "names that differ"))
+
+
+@style()
+def pressure_of_a_name_with_its_unit_behind_another():
+    return ("Time [s],Command [V],Position [mm],p [bar],p_Pa\n" +
+            rows([T, U_V, Y_MM, [50.0] * len(T), [70e5] * len(T)]),
+            truth(further={"p_Pa": [70e5] * len(T), "p_Pa_2": [50e5] * len(T)}))
