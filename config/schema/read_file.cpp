@@ -23,7 +23,7 @@ std::string read_from(int file, std::size_t most_bytes, std::string& text) {
   if (S_ISDIR(status.st_mode)) return "is a folder";
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) return "is a device";
   const bool pipe = S_ISFIFO(status.st_mode);
-  const std::string too_large = "is larger than " + size_words(most_bytes);
+  std::string too_large = "is larger than " + size_words(most_bytes);
   if (!pipe && static_cast<std::uintmax_t>(status.st_size) > most_bytes) return too_large;
   if (!pipe) text.reserve(static_cast<std::size_t>(status.st_size));
   for (;;) {
@@ -40,9 +40,28 @@ std::string read_from(int file, std::size_t most_bytes, std::string& text) {
   }
 }
 
-}  // namespace
+std::string read_head_from(int file, std::size_t most_bytes, std::string& text) {
+  struct stat status {};
+  if (fstat(file, &status) != 0) return std::strerror(errno);
+  if (S_ISDIR(status.st_mode)) return "is a folder";
+  if (S_ISFIFO(status.st_mode)) return "is a pipe";
+  if (!S_ISREG(status.st_mode)) return "is a device";
+  text.resize(most_bytes);
+  std::size_t held = 0;
+  while (held < most_bytes) {
+    const ssize_t n = read(file, text.data() + held, most_bytes - held);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return std::strerror(errno);
+    if (n == 0) break;
+    held += static_cast<std::size_t>(n);
+  }
+  text.resize(held);
+  return "";
+}
 
-FileContent read_file(const std::filesystem::path& path, std::size_t most_bytes) {
+using ReadFrom = std::string (*)(int file, std::size_t most_bytes, std::string& text);
+
+FileContent opened(const std::filesystem::path& path, std::size_t most_bytes, ReadFrom read_from) {
   FileContent content;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (file < 0) {
@@ -53,6 +72,16 @@ FileContent read_file(const std::filesystem::path& path, std::size_t most_bytes)
   close(file);
   if (!content.wrong.empty()) content.text.clear();
   return content;
+}
+
+}  // namespace
+
+FileContent read_head(const std::filesystem::path& path, std::size_t most_bytes) {
+  return opened(path, most_bytes, read_head_from);
+}
+
+FileContent read_file(const std::filesystem::path& path, std::size_t most_bytes) {
+  return opened(path, most_bytes, read_from);
 }
 
 }  // namespace config::schema

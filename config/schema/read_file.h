@@ -17,6 +17,10 @@ struct FileContent {
   std::string wrong;  ///< why it cannot be read, in a few words; empty: `text` is the whole file
 };
 
+/// The beginning of a regular file, `most_bytes` of it at most. Whatever else is there (a pipe,
+/// whose bytes come once, a device, a folder) is `wrong` and stays unread.
+[[nodiscard]] FileContent read_head(const std::filesystem::path& file, std::size_t most_bytes);
+
 /// Reads a file or a pipe; a pipe that nobody writes to is given up after ten seconds. Read errors,
 /// folders, devices and files beyond the limit are `wrong`. Never throws for what the file is.
 [[nodiscard]] FileContent read_file(const std::filesystem::path& file, std::size_t most_bytes);

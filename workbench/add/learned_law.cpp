@@ -1,7 +1,7 @@
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 #include "plant_sim/formula/curve_effect.h"
 #include "workbench/add/declared_formula.h"
 
@@ -18,9 +18,10 @@ constexpr const char* kLawOption = "--law";
 
 /// The laws of a diagnosis. Throws DataError for another file.
 ordered_json laws_in(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw bad_data(file, "cannot be read");
-  const ordered_json json = ordered_json::parse(in, nullptr, false);
+  const config::schema::FileContent in =
+      config::schema::read_file(file, config::schema::kMostRecordBytes);
+  if (!in.wrong.empty()) throw bad_data(file, "cannot be read (" + in.wrong + ")");
+  const ordered_json json = ordered_json::parse(in.text, nullptr, false);
   if (!json.is_object() || !json.contains("laws") || !json["laws"].is_array()) {
     throw bad_data(file, "is no diagnosis", "what `spoolwatch diagnose --json` writes");
   }

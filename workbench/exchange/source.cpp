@@ -3,11 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <limits>
 
@@ -15,6 +12,7 @@
 #include "config/record/log_reader.h"
 #include "config/record/readers.h"
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 
 namespace workbench::exchange {
 namespace {
@@ -85,12 +83,10 @@ void ExportProgress::at(std::size_t done, std::size_t of) {
 }
 
 bool is_log(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw bad_data(file, std::string("cannot be read: ") + std::strerror(errno));
-  std::string head(4, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (in.gcount() == 0) throw bad_data(file, "is empty", "a record or an LCM event log");
-  return config::record::is_lcm_log(head);
+  const config::schema::FileContent head = config::schema::read_head(file, 4);
+  if (!head.wrong.empty()) throw bad_data(file, "cannot be read: " + head.wrong);
+  if (head.text.empty()) throw bad_data(file, "is empty", "a record or an LCM event log");
+  return config::record::is_lcm_log(head.text);
 }
 
 double sample_time_s(const std::string& log) {

@@ -6,7 +6,7 @@
 namespace workbench::files {
 
 enum class FileKind {
-  other,   ///< neither, or unreadable
+  other,   ///< neither, unreadable, or no regular file
   record,  ///< CSV, MAT or LCM log
   toml,    ///< model or configuration
 };

@@ -1,7 +1,6 @@
 #include "workbench/replay/backtest_runs.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <memory>
 
@@ -9,6 +8,7 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/replay/log_walk.h"
@@ -102,11 +102,12 @@ class Course final : public SampleHandler {
 };
 
 bool is_log(const std::string& file) {
-  char head[4] = {};
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw bad_data(file, "cannot be read", "LCM event logs, folders of them, or records");
-  in.read(head, sizeof head);
-  return config::record::is_lcm_log({head, static_cast<std::size_t>(in.gcount())});
+  const config::schema::FileContent head = config::schema::read_head(file, 4);
+  if (!head.wrong.empty()) {
+    throw bad_data(file, "cannot be read (" + head.wrong + ")",
+                   "LCM event logs, folders of them, or records");
+  }
+  return config::record::is_lcm_log(head.text);
 }
 
 /// Run that a log belongs to, and its place in the run.

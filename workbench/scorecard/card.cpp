@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include "config/signals/nan.h"
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/read_file.h"
 #include "workbench/scorecard/simulated_records.h"
 #include "workbench/scorecard/statistics.h"
 
@@ -24,7 +24,12 @@ constexpr std::chrono::seconds kEvery{5};
 Store::Store(std::string file, std::string key) : file_(std::move(file)), key_(std::move(key)) {
   std::error_code ignored;
   if (file_.empty() || !std::filesystem::exists(file_, ignored)) return;
-  const json read = json::parse(std::ifstream(file_), nullptr, /*allow_exceptions=*/false);
+  const config::schema::FileContent saved =
+      config::schema::read_file(file_, config::schema::kMostRecordBytes);
+  if (!saved.wrong.empty()) {
+    throw config::schema::bad_data(file_, "cannot be read (" + saved.wrong + ")");
+  }
+  const json read = json::parse(saved.text, nullptr, /*allow_exceptions=*/false);
   if (!read.is_object() || !read.contains("results") || !read["results"].is_object() ||
       read.value("schema_version", json()) != 1) {
     throw config::schema::bad_data(file_, "is not what a scorecard has saved");

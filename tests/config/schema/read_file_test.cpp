@@ -39,5 +39,25 @@ TEST(ReadFile, ReadsAPipe) {
   close(ends[0]);
 }
 
+TEST(ReadHead, GivesTheBeginningOfARegularFileAndLeavesEverythingElseUnread) {
+  std::string name = (std::filesystem::temp_directory_path() / "head-XXXXXX").string();
+  close(mkstemp(name.data()));
+  std::ofstream(name) << "beginning and more";
+  EXPECT_EQ(read_head(name, 9).text, "beginning");
+  EXPECT_EQ(read_head(name, 100).text, "beginning and more");
+  std::filesystem::remove(name);
+  EXPECT_EQ(read_head("/dev/zero", 4).wrong, "is a device");
+  EXPECT_EQ(read_head("/tmp", 4).wrong, "is a folder");
+  EXPECT_EQ(read_head("/proc/self/mem", 4).wrong, "Input/output error");
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "text", 4), 4);
+  close(ends[1]);
+  const std::string of_pipe = "/proc/self/fd/" + std::to_string(ends[0]);
+  EXPECT_EQ(read_head(of_pipe, 4).wrong, "is a pipe");
+  EXPECT_EQ(read_file(of_pipe, kMiB).text, "text") << "its bytes are still to come";
+  close(ends[0]);
+}
+
 }  // namespace
 }  // namespace config::schema
