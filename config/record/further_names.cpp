@@ -20,9 +20,12 @@ std::string slug(std::string_view name) {
 }
 
 std::string FurtherNames::take(const std::string& name) {
-  std::string unique = name;
-  for (int k = 2; !given_.insert(unique).second; ++k) unique = name + "_" + std::to_string(k);
-  return unique;
+  if (given_.insert(name).second) return name;
+  int& number = next_.try_emplace(name, 2).first->second;
+  for (;; ++number) {
+    std::string unique = name + "_" + std::to_string(number);
+    if (given_.insert(unique).second) return unique;
+  }
 }
 
 std::string FurtherNames::take_with_unit(std::string_view name, const std::string& si,

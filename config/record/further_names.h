@@ -1,6 +1,7 @@
 // Names that the further columns of a file have in a record.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@ class FurtherNames {
 
  private:
   std::set<std::string> given_;
+  std::map<std::string, int> next_;  ///< number to try for a name that is given already
 };
 
 }  // namespace config::record

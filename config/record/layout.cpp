@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <sstream>
+#include <unordered_map>
 
 #include "config/record/column_roles.h"
 #include "config/record/column_words.h"
@@ -64,22 +65,49 @@ const MainColumn* main_of(const RecordColumn& column) {
   return nullptr;
 }
 
-void refuse_clash(const std::vector<RecordColumn>& columns, const std::vector<std::string>& names,
-                  std::size_t i, const std::string& where) {
-  for (std::size_t j = 0; j < i; ++j) {
-    const std::string both = names[j] + " and " + names[i];
-    if (names[i] == names[j]) throw bad_data(where, "has column " + names[i] + " twice");
-    if (is_time(columns[i]) && is_time(columns[j])) {
-      throw bad_data(where, "has two time columns, " + both);
-    }
-    const bool main = columns[i].stem == "u" || columns[i].stem == "y";
-    const bool same_stem = columns[i].stem == columns[j].stem && !columns[i].si_unit.empty() &&
-                           !columns[j].si_unit.empty();
-    if (same_stem && (main || columns[i].si_unit == columns[j].si_unit)) {
-      throw bad_data(where, "has contradictory units: " + both, "names that differ");
-    }
+/// Refuses columns that say the same, or contradict one another, with the first of them.
+class ClashCheck {
+ public:
+  explicit ClashCheck(const std::string& where) : where_(where) {}
+
+  /// The columns come in the file's order, each once.
+  void add(const RecordColumn& column, const std::string& name) {
+    const bool time = is_time(column);
+    const bool main = column.stem == "u" || column.stem == "y";
+    const std::string stem_and_unit = column.stem + '\n' + (main ? "" : column.si_unit);
+    const auto same_name = names_.find(name);
+    const auto same_stem = column.si_unit.empty() ? stems_.end() : stems_.find(stem_and_unit);
+    const std::size_t first =
+        std::min({same_name == names_.end() ? kNone : same_name->second, time ? time_ : kNone,
+                  same_stem == stems_.end() ? kNone : same_stem->second});
+    if (first != kNone) refuse(name, first, same_name != names_.end(), time);
+    names_.emplace(name, given_.size());
+    if (time) time_ = given_.size();
+    if (!column.si_unit.empty()) stems_.emplace(stem_and_unit, given_.size());
+    given_.push_back({name, time});
   }
-}
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  struct Given {
+    std::string name;
+    bool time;
+  };
+
+  [[noreturn]] void refuse(const std::string& name, std::size_t first, bool twice,
+                           bool time) const {
+    const std::string both = given_[first].name + " and " + name;
+    if (twice && given_[first].name == name)
+      throw bad_data(where_, "has column " + name + " twice");
+    if (time && given_[first].time) throw bad_data(where_, "has two time columns, " + both);
+    throw bad_data(where_, "has contradictory units: " + both, "names that differ");
+  }
+
+  const std::string& where_;
+  std::vector<Given> given_;
+  std::size_t time_ = kNone;
+  std::unordered_map<std::string, std::size_t> names_, stems_;
+};
 
 struct PlainColumn {
   RecordColumn column;
@@ -148,11 +176,12 @@ std::optional<Layout> plain_layout(const std::vector<std::string>& names,
   }
   std::vector<PlainColumn> plain(columns.size());
   FurtherNames given;
+  ClashCheck clashes(where);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (names[i].empty()) continue;
     plain[i] = column_of(names[i], units[i], where);
     columns[i] = plain[i].column;
-    refuse_clash(columns, names, i, where);
+    clashes.add(columns[i], names[i]);
     if (!plain[i].named_by_unit) (void)given.take(columns[i].si_name);
   }
   Layout layout;

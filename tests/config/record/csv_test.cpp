@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 
 #include "config/record/record.h"
@@ -283,6 +284,28 @@ TEST(Csv, KeepsMessagesShort) {
   } catch (const schema::Error& error) {
     EXPECT_LT(std::string(error.what()).size(), 300U);
   }
+}
+
+TEST(Csv, TheTimeForAHeaderGrowsWithItsColumnsNotWithTheirSquare) {
+  const auto seconds_of = [](int columns) {
+    std::string header = "t_s,u_V,y_m";
+    std::string row = ",1,0";
+    for (int i = 0; i < columns; ++i) {
+      header += ",c" + std::to_string(i) + "_V";
+      row += ",1";
+    }
+    const auto worked_s = [] {
+      timespec now{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+      return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    };
+    const double begin_s = worked_s();
+    EXPECT_EQ(read(header + "\n0" + row + "\n0.005" + row + "\n0.01" + row + "\n").further.size(),
+              static_cast<std::size_t>(columns));
+    return worked_s() - begin_s;
+  };
+  // Eight times the columns: about eight times the time; by pairs it is 64 times.
+  EXPECT_LT(seconds_of(64'000), 30.0 * seconds_of(8'000));
 }
 
 TEST(Csv, WritesIntoAPipeInsteadOfReplacingIt) {
