@@ -144,7 +144,10 @@ bool parse_number(std::string_view field, char decimal, double& value, LoneGroup
     const std::string plain = with_plain_minus(field);
     return plain.size() < field.size() && parse_number(plain, decimal, value, lone);
   }
-  if (field.starts_with('+')) field.remove_prefix(1);
+  if (field.starts_with('+')) {
+    field.remove_prefix(1);
+    if (field.starts_with('-')) return false;
+  }
   if (field.empty() || !(is_digit(field.front()) || field.front() == '-' || field.front() == '.' ||
                          field.front() == ',')) {
     return false;

@@ -90,6 +90,8 @@ TEST(Csv, RefusesALineCutOff) {
 TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,abc,0\n", ":3", "u_V: 'abc' is no number");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1.2.3,0\n", ":3", "is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,+-1,0\n", ":3", "u_V: '+-1' is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,+\u22121,0\n", ":3", "is no number");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,inf,1\n", ":3", "u_V is 'inf'");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1e999,1\n", ":3", "u_V is '1e999'");
   expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is 'inf'");
