@@ -127,11 +127,28 @@ DetectionConfig make_detection_config(const DaemonConfig& config, double sample_
   return made;
 }
 
+namespace {
+
+/// The configuration without the places of this machine: of an absolute path its last name.
+std::string portable_text(DaemonConfig& config) {
+  std::vector<config::schema::FlatTable> tables = flatten(config);
+  for (config::schema::FlatTable& table : tables) {
+    for (config::schema::FlatField& field : table.fields) {
+      if (!std::filesystem::path(field.path).is_absolute()) continue;
+      std::string value = field.value;  // quoted
+      while (value.ends_with("/\"")) value.erase(value.size() - 2, 1);
+      field.value = "\"" + value.substr(value.rfind('/') + 1);
+    }
+  }
+  return config::schema::print_toml(tables);
+}
+
+}  // namespace
+
 std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config,
                                              const std::string& pipeline_text) {
-  std::vector<io::EvidenceFile> files = {
-      {"configuration.toml", config::schema::print_toml([&](Visitor& v) { config.visit(v); })},
-      {"pipeline.toml", pipeline_text}};
+  std::vector<io::EvidenceFile> files = {{"configuration.toml", portable_text(config)},
+                                         {"pipeline.toml", pipeline_text}};
   for (const config::schema::FlatTable& table : flatten(config)) {
     for (const config::schema::FlatField& field : table.fields) {
       if (field.path.empty() || field.evidence_copy.empty()) continue;

@@ -99,9 +99,11 @@ std::vector<FlatTable> flatten(const Visitor::Body& visit) {
   return visitor.tables();
 }
 
-std::string print_toml(const Visitor::Body& visit) {
+std::string print_toml(const Visitor::Body& visit) { return print_toml(flatten(visit)); }
+
+std::string print_toml(const std::vector<FlatTable>& tables) {
   std::string text = "schema_version = " + std::to_string(kSchemaVersion) + "\n";
-  for (const FlatTable& table : flatten(visit)) {
+  for (const FlatTable& table : tables) {
     if (!table.name.empty()) text += "\n" + table.header() + "\n";
     for (const FlatField& field : table.fields) text += field.key + " = " + field.value + "\n";
   }

@@ -61,4 +61,7 @@ class FlatVisitor final : public Visitor {
 /// The tables that `visit` lists, the top of the file first.
 [[nodiscard]] std::vector<FlatTable> flatten(const Visitor::Body& visit);
 
+/// The tables as TOML text.
+[[nodiscard]] std::string print_toml(const std::vector<FlatTable>& tables);
+
 }  // namespace config::schema

@@ -110,7 +110,7 @@ std::string manifest(const fs::path& folder, const EvidenceFacts& facts,
       {"last_tick", contents.last_tick},
       {"exact", contents.inexact.empty()},
       {"why_not", contents.inexact},
-      {"replay", "spoolwatch replay " + fs::absolute(folder).string()},
+      {"replay", "spoolwatch replay " + folder.filename().string()},
       {"files", std::move(files)}};
   return whole.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
 }
@@ -121,9 +121,9 @@ std::string words(const fs::path& folder, const EvidenceFacts& facts,
   return "Evidence of alarm " + std::string(t.source) + "." + t.name + " on rig " + facts.rig_id +
          ", " + utc_text(t.utc_us) + ", sample " + std::to_string(t.tick) + ".\n" +
          (contents.inexact.empty()
-              ? "Replay the fault detection to the same alarm, bit for bit:\n  spoolwatch "
-                "replay " +
-                    fs::absolute(folder).string() + "\n"
+              ? "Replay the fault detection to the same alarm, bit for bit, where this folder is:\n"
+                "  spoolwatch replay " +
+                    folder.filename().string() + "\n"
               : "It cannot be replayed: " + contents.inexact + ".\n") +
          "log.lcmlog is an LCM event log: spoolwatch listen, export, compare read it.\n";
 }

@@ -151,6 +151,12 @@ TEST_F(Evidence, BeginsBeforeTheAlarmAndEndsAfterItAtFullRate) {
     }
     EXPECT_TRUE(fs::exists(pack / "model.toml"));
     EXPECT_TRUE(fs::exists(pack / "configuration.toml"));
+    for (const auto& entry : fs::directory_iterator(pack)) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      const std::string text(std::istreambuf_iterator<char>(file), {});
+      EXPECT_EQ(text.find(folder_.path().string()), std::string::npos)
+          << entry.path() << " tells where the daemon keeps its files";
+    }
   }
 }
 
