@@ -20,9 +20,14 @@ constexpr std::int64_t kDetectorTimeout_ns = 2'000'000'000;
 /// Bounds one call of serve(), so that a flood of requests cannot delay a stop signal.
 constexpr int kRequestsPerCall = 8;
 
-/// Names the command that leads out of a state which does not allow the one given.
-std::string hint(control::ArmingState state) {
+/// Names the command that leads out of a state which does not allow the one given; of a stop or a
+/// reset that the state makes needless, that it is.
+std::string hint(control::ArmingState state, const io::ControlRequest& given) {
   std::string prefix = std::string("not possible in state ") + control::to_string(state);
+  if (given.kind == Kind::event && state != control::ArmingState::monitor) {
+    if (given.event == control::Event::stop) return prefix + ": the valve is at null already";
+    if (given.event == control::Event::reset) return prefix + ": nothing is latched";
+  }
   switch (state) {
     case control::ArmingState::disarmed:
       return prefix + ": arm first";
@@ -182,7 +187,7 @@ std::string ControlRequestHandler::poll_loop_answer(const Pending& pending) {
       control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
   if (answer.number == pending.number) {
     const std::string reject_reason =
-        answer.reject_reason == RejectReason::none ? "" : explain(answer);
+        answer.reject_reason == RejectReason::none ? "" : explain(answer, pending);
     audit(pending, reject_reason);
     return reject_reason.empty() ? io::print_done(answer.state)
                                  : io::print_rejected(answer.state, reject_reason);
@@ -234,12 +239,13 @@ std::string ControlRequestHandler::poll_reload_answer(const Pending& pending) {
                             "the detector has not applied the new rules yet; it may still do so");
 }
 
-std::string ControlRequestHandler::explain(const control::CommandAnswer& answer) const {
+std::string ControlRequestHandler::explain(const control::CommandAnswer& answer,
+                                           const Pending& pending) const {
   switch (answer.reject_reason) {
     case RejectReason::none:
       break;
     case RejectReason::state:
-      return hint(answer.state);
+      return hint(answer.state, io::parse_request(pending.request.line));
     case RejectReason::monitor:
       return "no valve is driven: [valve] backend = \"none\", or a record is replayed";
     case RejectReason::expired:
@@ -268,11 +274,11 @@ std::string ControlRequestHandler::obstacle() const {
     return "input " + identity_.inputs[input] + ": " + (std::isnan(value) ? "cannot be read" : off);
   };
   for (const std::size_t input : identity_.e_stops) {
-    const std::string why = wrong(input, control::reason_of(control::GuardKind::e_stop));
+    std::string why = wrong(input, control::reason_of(control::GuardKind::e_stop));
     if (!why.empty()) return why;
   }
   for (const std::size_t input : identity_.enables) {
-    const std::string why = wrong(input, "the enable input is off");
+    std::string why = wrong(input, "the enable input is off");
     if (!why.empty()) return why;
   }
   return "";

@@ -80,7 +80,8 @@ class ControlRequestHandler {
   [[nodiscard]] std::string reject(const Pending& pending, const std::string& why);
   /// Writes a command to the audit file.
   void audit(const Pending& pending, const std::string& reject_reason);
-  [[nodiscard]] std::string explain(const control::CommandAnswer& answer) const;
+  [[nodiscard]] std::string explain(const control::CommandAnswer& answer,
+                                    const Pending& pending) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
   void add_rods(io::ControlStatus& status) const;

@@ -131,6 +131,17 @@ TEST_F(ControlRequestHandlerTest, SaysWhatToDoInsteadOfARejectedCommand) {
   EXPECT_THAT(serve(), HasSubstr(R"("reason":"not possible in state DISARMED: arm first")"));
 }
 
+TEST_F(ControlRequestHandlerTest, SaysThatAStopOrAResetIsNotNeeded) {
+  send(R"({"command": "stop"})");
+  EXPECT_EQ(serve(), "");
+  answer(next_command().number, RejectReason::state, ArmingState::latched);
+  EXPECT_THAT(serve(), HasSubstr("not possible in state LATCHED: the valve is at null already"));
+  send(R"({"command": "reset"})");
+  EXPECT_EQ(serve(), "");
+  answer(next_command().number, RejectReason::state, ArmingState::disarmed);
+  EXPECT_THAT(serve(), HasSubstr("not possible in state DISARMED: nothing is latched"));
+}
+
 // A detector that hangs must not keep a stop from the loop.
 TEST_F(ControlRequestHandlerTest, PassesAStopOnWhileTheDetectorOwesAnAnswer) {
   send(R"({"command": "alarms"})");
