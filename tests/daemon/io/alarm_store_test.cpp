@@ -127,6 +127,14 @@ TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
   EXPECT_EQ(AlarmStore(folder_ / "none", "rig", writer).load(5).wrong, "");
 }
 
+TEST_F(AlarmFiles, AreNotWrittenThroughALinkInTheWay) {
+  const std::filesystem::path file = folder_ / "alarms.json";
+  std::ofstream(folder_ / "other") << "of somebody";
+  std::filesystem::create_symlink("other", folder_ / "alarms.json.new");
+  EXPECT_NE(write_durably(file, "new"), 0);
+  EXPECT_EQ(text_of(folder_ / "other"), "of somebody");
+}
+
 TEST_F(AlarmFiles, ThatCannotBeWrittenLeaveTheOldOne) {
   const std::filesystem::path file = folder_ / "alarms.json";
   ASSERT_EQ(write_durably(file, "old"), 0);

@@ -144,7 +144,17 @@ TEST_F(ControlSocketTest, OutlivesClientsThatGoFloodOrComeInCrowds) {
   ::close(flood);
 }
 
-TEST_F(ControlSocketTest, IsRefusedWhereALiveOneIsAndTakesTheplaceOfADeadOne) {
+TEST_F(ControlSocketTest, ItsLockIsNotALinkToAnotherFile) {
+  const std::filesystem::path other = config_.socket + ".other";
+  std::filesystem::create_directories(other.parent_path());
+  std::filesystem::create_symlink(other, config_.socket + ".lock");
+  EXPECT_THAT(refusal(1), testing::HasSubstr("Too many levels of symbolic links"));
+  EXPECT_FALSE(std::filesystem::exists(other));
+  std::filesystem::remove(config_.socket + ".lock");
+  EXPECT_EQ(refusal(1), "accepted");
+}
+
+TEST_F(ControlSocketTest, IsRefusedWhereALiveOneIsAndTakesThePlaceOfADeadOne) {
   {
     const ControlSocket socket(config_, "rig.toml");
     EXPECT_EQ(refusal(1), "control socket " + config_.socket +
