@@ -71,8 +71,10 @@ std::vector<std::string> new_alarms(const RunningDaemon& daemon, const fs::path&
                                          rules_with(daemon, daemon.bands_file()), files);
   std::vector<std::string> found;
   for (const replay::BacktestRun& run : runs) {
+    // INVALID says that periods were lost or nothing moved, which no band changes.
     const replay::OccurrenceDifference difference =
-        replay::compare(run.before, run.after, kTolerance_s, 0.5 * run.sample_time_s);
+        replay::compare(replay::passed_limits(run.before), replay::passed_limits(run.after),
+                        kTolerance_s, 0.5 * run.sample_time_s);
     for (const replay::Occurrence& each : difference.appears) {
       found.push_back(
           fmt::format("{} at {:.1f} s in {}", each.alarm, each.from_s, run.files.front()));
@@ -96,7 +98,8 @@ std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
     try {
       const auto runs = replay::run_backtest(rules_with(daemon, daemon.bands_file()), std::nullopt,
                                              {log.string()});
-      if (runs.front().after.empty() && runs.front().before.empty()) {
+      if (replay::passed_limits(runs.front().after).empty() &&
+          replay::passed_limits(runs.front().before).empty()) {
         healthy.push_back(log.string());
       }
     } catch (const DataError&) {  // a log that cannot be replayed is no healthy one

@@ -27,13 +27,13 @@ struct ModelTrial {
                                    const plant_sim::ModelFile& after,
                                    const std::vector<config::record::Record>& records);
 
-/// Alarms that new bands would raise on the records and the old ones do not, in words: "period_gain
-/// at 12.3 s in FILE". `bands` beside the old file, under a unique name.
+/// Limits that new bands would find passed on the records and the old ones do not, in words:
+/// "period_gain at 12.3 s in FILE". `bands` beside the old file, under a unique name.
 [[nodiscard]] std::vector<std::string> new_alarms(const RunningDaemon& daemon,
                                                   const std::filesystem::path& bands,
                                                   const std::vector<std::string>& files);
 
-/// The newest logs of the daemon's recorder on which its rules raise no alarm. Throws
+/// The newest logs of the daemon's recorder in which its rules find no limit passed. Throws
 /// config::schema::RunError when there is none.
 [[nodiscard]] std::vector<std::string> healthy_logs(const RunningDaemon& daemon);
 

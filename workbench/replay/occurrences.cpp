@@ -6,6 +6,9 @@
 namespace workbench::replay {
 namespace {
 
+constexpr int kMinor = 1;  // severities of alarm_t
+constexpr int kMajor = 2;
+
 double end_of(const Occurrence& o) noexcept {
   return std::isnan(o.to_s) ? std::numeric_limits<double>::infinity() : o.to_s;
 }
@@ -32,16 +35,29 @@ void OccurrenceList::tell(const std::string& alarm, double t_s, bool active, int
   const auto open = std::find_if(all_.rbegin(), all_.rend(), [&](const Occurrence& o) {
     return o.alarm == alarm && std::isnan(o.to_s);
   });
+  const bool passed = severity == kMinor || severity == kMajor;
   if (open != all_.rend()) {
     if (!active) open->to_s = t_s;
+    if (active && passed && std::isnan(open->limit_s)) open->limit_s = t_s;
   } else if (active) {
     Occurrence occurrence;
     occurrence.alarm = alarm;
     occurrence.from_s = t_s;
     occurrence.severity = severity;
     occurrence.direction = direction;
+    if (passed) occurrence.limit_s = t_s;
     all_.push_back(occurrence);
   }
+}
+
+std::vector<Occurrence> passed_limits(const std::vector<Occurrence>& all) {
+  std::vector<Occurrence> passed;
+  for (const Occurrence& each : all) {
+    if (std::isnan(each.limit_s)) continue;
+    passed.push_back(each);
+    passed.back().from_s = each.limit_s;
+  }
+  return passed;
 }
 
 OccurrenceDifference compare(const std::vector<Occurrence>& before,

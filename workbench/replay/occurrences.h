@@ -15,6 +15,8 @@ struct Occurrence {
   double to_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: it stood at the log's end
   int severity = 0;                                        ///< when it came, as in alarm_t
   int direction = 0;
+  /// When a limit was passed; NaN: the estimate was INVALID all the time.
+  double limit_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Alarms that come and go, as occurrences in the order of their coming.
@@ -27,6 +29,9 @@ class OccurrenceList {
  private:
   std::vector<Occurrence> all_;
 };
+
+/// Those in which a limit was passed, each from then on.
+[[nodiscard]] std::vector<Occurrence> passed_limits(const std::vector<Occurrence>& all);
 
 struct Shift {
   Occurrence before, after;

@@ -34,6 +34,21 @@ TEST(Occurrences, AreFromTheComingToTheGoingOfAnAlarm) {
   EXPECT_TRUE(std::isnan(list.all()[1].to_s));
 }
 
+TEST(Occurrences, InWhichALimitWasPassedBeginThere) {
+  OccurrenceList list;
+  list.tell("a", 1.0, true, 3, 0);  // INVALID all the time
+  list.tell("a", 2.0, false, 0, 0);
+  list.tell("a", 3.0, true, 3, 0);
+  list.tell("a", 4.0, true, 2, 1);
+  list.tell("a", 5.0, true, 1, 1);
+  list.tell("b", 6.0, true, 1, 1);
+  const std::vector<Occurrence> passed = passed_limits(list.all());
+  ASSERT_EQ(passed.size(), 2U);
+  EXPECT_EQ(passed[0].from_s, 4.0);
+  EXPECT_TRUE(std::isnan(passed[0].to_s));
+  EXPECT_EQ(passed[1].from_s, 6.0);
+}
+
 TEST(Occurrences, OfTheSameTimesStayTheSame) {
   const std::vector<Occurrence> list = {at("a", 1, 2), at("b", 1, 2), at("a", 100, NAN)};
   const OccurrenceDifference d = compare(list, list, 10.0, kSample_s);
