@@ -3,9 +3,10 @@
 
   measure_null.py PROGRAMS CONFIG_FOLDER [--line tcp|rtu] [--action latch|ramp] [--only TEXT] [--runs N]
 
-The device of check_modbus.py spoils every reply from a moment on at which the valve is far from null. A
-client of its own watches the rig's valve. Prints a line per trouble: row of --check, stated time, the longest
-measured one and the state that follows; exit code 1 where the valve was not at null by the stated time.
+The device of check_modbus.py spoils every reply (modbus_troubles.py) from a moment on at which the valve is
+far from null. A client of its own watches the rig's valve. Prints a line per trouble: row of --check, stated
+time, the longest measured one and the state that follows; exit code 1 where the valve was not at null by the
+stated time.
 """
 import argparse
 import collections
@@ -21,8 +22,8 @@ import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from check_modbus import (ON_RTU, TROUBLES, Bench, Proxy, SerialProxy, bench_config,  # noqa: E402
-                          eventually, whole)
+from check_modbus import Bench, Proxy, SerialProxy, bench_config, eventually  # noqa: E402
+from modbus_troubles import ON_RTU, TROUBLES, whole  # noqa: E402
 from stand import BenchRig, Daemon  # noqa: E402
 
 NULL_V = 0.01  # two steps of the converter
