@@ -236,10 +236,15 @@ void print_statistics(const AlarmStatistics& s, std::ostream& out) {
       out << "    " << list[i] << '\n';
     }
   };
-  out << s.annunciations << " alarms in " << fmt::format("{:.3g} h", s.observed_s / 3600.0)
+  // A rate of a few minutes would be one alarm, extrapolated.
+  const bool an_hour = s.observed_s >= 3600.0;
+  out << s.annunciations << (s.annunciations == 1 ? " alarm in " : " alarms in ")
+      << (an_hour ? fmt::format("{:.3g} h", s.observed_s / 3600.0)
+                  : fmt::format("{:.3g} min", s.observed_s / 60.0))
       << " of a running daemon, " << text_of(s.from_utc_us) << " to " << text_of(s.to_utc_us)
       << " UTC\n";
-  row("per hour", fmt::format("{:.3g}", s.per_hour), "6 can be handled, 12 at most");
+  row("per hour", an_hour ? fmt::format("{:.3g}", s.per_hour) : "-",
+      an_hour ? "6 can be handled, 12 at most" : "after an hour; 6 can be handled, 12 at most");
   row("most in 10 min", std::to_string(s.most_in_10_min), "more than 10 are a flood");
   row("time in a flood", fmt::format("{:.3g} %", 100.0 * s.flood_ratio), "less than 1 %");
   names("standing", s.standing, "");

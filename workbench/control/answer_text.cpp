@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 #include "config/units/quantity.h"
 #include "daemon/control/protocol.h"
@@ -90,15 +93,37 @@ std::string number_of(const ordered_json& object, const char* key, double scale,
   return fmt::format("{:.4g}{}", found->get<double>() * scale, unit);
 }
 
-void print_inputs(const ordered_json& status, const char* key, const char* what,
-                  std::ostream& out) {
+/// ": 93.1 bar", what a guard compares with its limit; empty where it reads nothing.
+std::string guard_value(const ordered_json& guard) {
+  struct Unit {
+    std::string_view kind;
+    double factor;
+    const char* name;
+  };
+  constexpr std::array kUnits{Unit{"travel", 1e3, " mm"},     Unit{"following", 1e3, " mm"},
+                              Unit{"frozen", 1e3, " mm"},     Unit{"jump", 1e3, " mm"},
+                              Unit{"disagree", 1e3, " mm"},   Unit{"speed", 1e3, " mm/s"},
+                              Unit{"stale", 1e3, " ms"},      Unit{"saturated", 1.0, " V"},
+                              Unit{"pressure", 1e-5, " bar"}, Unit{"chambers", 1e-5, " bar"}};
+  const auto value = guard.find("value");
+  if (value == guard.end() || !value->is_number()) return "";
+  const std::string kind = text_of(guard, "kind");
+  const auto* const unit = std::find_if(kUnits.begin(), kUnits.end(),
+                                        [&](const Unit& each) { return each.kind == kind; });
+  return unit == kUnits.end() ? ": " + number_of(guard, "value", 1.0, "")
+                              : ": " + number_of(guard, "value", unit->factor, unit->name);
+}
+
+void print_inputs(const ordered_json& status, const char* key, const char* what, std::ostream& out,
+                  double factor = 1.0, const char* unit = "") {
   const auto list = status.find(key);
   if (list == status.end() || !list->is_array()) return;
   for (const ordered_json& entry : *list) {
     // Pressures are those of the roles that have a unit.
     const bool pressure = text_of(entry, "role").find("pressure") != std::string::npos;
     out << "  " << what << ' ' << text_of(entry, "id") << ": "
-        << (pressure ? number_of(entry, "value", 1e-5, " bar") : number_of(entry, "value", 1.0, ""))
+        << (pressure ? number_of(entry, "value", 1e-5, " bar")
+                     : number_of(entry, "value", factor, unit))
         << '\n';
   }
 }
@@ -107,7 +132,7 @@ void print_inputs(const ordered_json& status, const char* key, const char* what,
 void print_rods(const ordered_json& status, std::ostream& out) {
   const auto rods = status.find("rods");
   if (rods == status.end() || !rods->is_array()) {
-    return print_inputs(status, "spare_rods", "spare rod", out);
+    return print_inputs(status, "spare_rods", "spare rod", out, 1e3, " mm");
   }
   const std::string in_charge = text_of(status, "rod_in_charge");
   for (const ordered_json& rod : *rods) {
@@ -195,8 +220,7 @@ void print_status(const ordered_json& status, std::ostream& out) {
   for (const ordered_json& guard : *guards) {
     if (!is_set(guard, "active")) continue;
     out << "  guard " << text_of(guard, "id") << " (" << text_of(guard, "kind") << ", "
-        << text_of(guard, "action") << ") is active: " << number_of(guard, "value", 1.0, "")
-        << '\n';
+        << text_of(guard, "action") << ") is active" << guard_value(guard) << '\n';
   }
 }
 

@@ -91,6 +91,16 @@ TEST_F(AlarmStatisticsTest, FindsChatteringStaleAlarmsAndFloods) {
   EXPECT_THAT(out.str(), testing::HasSubstr("band.noisy: 5"));
 }
 
+TEST_F(AlarmStatisticsTest, ARateNeedsAnHour) {
+  event(0, "start");
+  alarm(10, "a.b", true);
+  event(90, "end");
+  std::ostringstream out;
+  print_statistics(statistics(), out);
+  EXPECT_THAT(out.str(), testing::HasSubstr("1 alarm in 1.5 min of a running daemon"));
+  EXPECT_THAT(out.str(), testing::HasSubstr("per hour             -"));
+}
+
 TEST_F(AlarmStatisticsTest, AShelvedAlarmIsNoneAndComesWhenItIsBack) {
   event(0, "start");
   alarm(10, "a.b", true, "SHELVED");
