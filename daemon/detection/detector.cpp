@@ -221,6 +221,10 @@ void Detector::update_alarm_file_alarms() {
               error != 0 ? std::string("alarm states cannot be saved for a restart: ") +
                                std::strerror(error)
                          : "");
+    parts_.alarms.store->retry_history();
+    condition("alarms", "history_not_saved", Severity::minor,
+              parts_.alarms.store->waiting_history() > 0,
+              "changes of alarms wait until history.log can be written; the statistics lack them");
   }
   if (parts_.alarms.audit == nullptr) return;
   const std::int64_t lost = parts_.alarms.audit->lost();

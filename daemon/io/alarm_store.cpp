@@ -24,6 +24,7 @@ using nlohmann::ordered_json;
 constexpr const char* kFormat = "spoolwatch alarms";
 constexpr int kVersion = 1;
 constexpr std::size_t kLargestFile = 16 << 20;
+constexpr std::size_t kMostUnwritten = 10'000;  // lines of the history
 
 PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
   PersistedAlarm life;
@@ -113,7 +114,7 @@ AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id,
     : file_(folder / "alarms.json"),
       rig_id_(std::move(rig_id)),
       writer_(writer),
-      history_(std::make_shared<CappedFile>(folder / "history.log", history_bytes)) {
+      history_(std::make_shared<History>(folder / "history.log", history_bytes)) {
   append("\"event\":\"start\"");
 }
 
@@ -126,9 +127,26 @@ void AlarmStore::append(const std::string& line) {
 
 void AlarmStore::append(const std::string& line, std::int64_t utc_us) {
   std::string whole = "{\"utc\":\"" + utc_text(utc_us) + "\"," + line + "}\n";
-  if (!writer_.post([file = history_, text = std::move(whole)] { file->append(text); })) {
-    history_->lose();
+  const bool posted = writer_.post([history = history_, text = std::move(whole)] {
+    history->unwritten.push_back(text);
+    if (history->unwritten.size() > kMostUnwritten) {
+      history->unwritten.pop_front();
+      history->file.lose();
+    }
+    write(*history);
+  });
+  if (!posted) history_->file.lose();
+}
+
+void AlarmStore::write(History& history) {
+  while (!history.unwritten.empty() && history.file.try_append(history.unwritten.front())) {
+    history.unwritten.pop_front();
   }
+  history.waiting = history.unwritten.size();
+}
+
+void AlarmStore::retry_history() {
+  if (waiting_history() > 0) (void)writer_.post([history = history_] { write(*history); });
 }
 
 void AlarmStore::note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -57,19 +59,30 @@ class AlarmStore {
 
   /// Appends the alarm to the history where its severity or state has changed. One thread.
   void note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us);
+  /// Tries once more to write the lines of the history that a full disk kept back. One thread.
+  void retry_history();
+  /// Lines of the history that wait for the disk. Any thread.
+  [[nodiscard]] std::size_t waiting_history() const noexcept { return history_->waiting; }
 
   /// errno of the last save, 0 on success. Any thread.
   [[nodiscard]] int error() const noexcept { return *error_; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
  private:
-  std::filesystem::path file_;
-  std::string rig_id_;
-  BackgroundWriter& writer_;
+  struct History {
+    History(const std::filesystem::path& path, std::int64_t most_bytes) : file(path, most_bytes) {}
+    CappedFile file;
+    std::deque<std::string> unwritten;    ///< the writer's thread alone
+    std::atomic<std::size_t> waiting{0};  ///< size of `unwritten`
+  };
+  static void write(History& history);
   void append(const std::string& line);
   void append(const std::string& line, std::int64_t utc_us);
 
-  std::shared_ptr<CappedFile> history_;
+  std::filesystem::path file_;
+  std::string rig_id_;
+  BackgroundWriter& writer_;
+  std::shared_ptr<History> history_;
   std::map<std::string, std::string> noted_;  ///< newest line of each alarm, without its time
   std::uint64_t saved_ = 0;                   ///< AlarmBook::changes() at the last save
   std::shared_ptr<std::atomic<int>> error_ =

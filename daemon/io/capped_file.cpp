@@ -8,7 +8,7 @@
 
 namespace monitor::io {
 
-void CappedFile::append(const std::string& line) noexcept {
+bool CappedFile::try_append(const std::string& line) noexcept {
   std::error_code error;
   std::filesystem::create_directories(path_.parent_path(), error);
   const auto size = std::filesystem::file_size(path_, error);
@@ -26,7 +26,7 @@ void CappedFile::append(const std::string& line) noexcept {
     if (n >= 0 && !written && known && ftruncate(file, before.st_size) != 0) written = false;
     close(file);
   }
-  if (!written) ++lost_;
+  return written;
 }
 
 }  // namespace monitor::io

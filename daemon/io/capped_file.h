@@ -14,9 +14,14 @@ class CappedFile {
   CappedFile(std::filesystem::path file, std::int64_t most_bytes)
       : path_(std::move(file)), most_bytes_(most_bytes) {}
 
-  /// Appends one line, newline included, and synchronises. One thread at a time.
-  void append(const std::string& line) noexcept;
-  /// Counts a line that was not even tried.
+  /// Appends one line, newline included, and synchronises; one that cannot be written is lost. One
+  /// thread at a time.
+  void append(const std::string& line) noexcept {
+    if (!try_append(line)) lose();
+  }
+  /// The same; returns false where nothing was written, for another try.
+  [[nodiscard]] bool try_append(const std::string& line) noexcept;
+  /// Counts a line that is not in the file.
   void lose() noexcept { ++lost_; }
   /// Lines that are not in the file. Any thread.
   [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }

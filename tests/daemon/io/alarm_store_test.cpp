@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <future>
@@ -125,6 +126,30 @@ TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
   }
   BackgroundWriter writer;
   EXPECT_EQ(AlarmStore(folder_ / "none", "rig", writer).load(5).wrong, "");
+}
+
+TEST_F(AlarmFiles, HistoryWaitsForADiskThatIsFull) {
+  std::filesystem::create_directory(folder_ / "history.log");  // in the way, as a full disk is
+  BackgroundWriter writer;
+  AlarmStore store(folder_, "rig", writer);
+  estimator::fdi::Alarm alarm;
+  alarm.source = "loop";
+  alarm.name = "n";
+  alarm.active = true;
+  store.note(alarm, 1'000'000);
+  const auto waiting = [&](std::size_t lines) {
+    for (int i = 0; i < 1000 && store.waiting_history() != lines; ++i) usleep(2000);
+    return store.waiting_history() == lines;
+  };
+  EXPECT_TRUE(waiting(2)) << "the start and the alarm";
+  store.retry_history();
+  EXPECT_TRUE(waiting(2));
+  std::filesystem::remove(folder_ / "history.log");
+  store.retry_history();
+  EXPECT_TRUE(waiting(0));
+  const std::string text = text_of(folder_ / "history.log");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_LT(text.find("start"), text.find("loop.n"));
 }
 
 TEST_F(AlarmFiles, AreNotWrittenThroughALinkInTheWay) {

@@ -159,6 +159,7 @@ TEST_F(Alarms, ThatCannotBeSavedAreAnAlarmThemselves) {
   EXPECT_EQ(order("ack standing").exit_code, 0) << "people can act all the same";
   EXPECT_TRUE(shows("MINOR    alarms.not_saved")) << order("alarms").out;
   EXPECT_TRUE(shows("MINOR    alarms.audit_lost")) << order("alarms").out;
+  EXPECT_TRUE(shows("MINOR    alarms.history_not_saved")) << order("alarms").out;
   EXPECT_EQ(end().exit_code, 0);
 }
 
