@@ -13,6 +13,10 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from stand import Daemon  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -115,6 +119,36 @@ class Tries:
         self.check(f"{file.name}: seven bytes at a time",
                    short.returncode == 0 and timeless(file.read_bytes()) == timeless(whole), short)
 
+    def alarms(self, config, fault, alarm):
+        """Files of the running daemon: it goes on, and an alarm says what is missing."""
+        self.tried += 1
+        self.faults += 1
+        with Daemon(self.programs, config, ["loop.privileges=try"],
+                    environment={"LD_PRELOAD": str(self.library), "SPOOLWATCH_FAULT": fault}) as daemon:
+            obeys = daemon.ask("stop")["ok"] and daemon.ask("start")["ok"]
+            ends = time.monotonic() + 15
+            names = set()
+            while alarm not in names and time.monotonic() < ends:
+                time.sleep(0.2)
+                names = {f"{a['source']}.{a['name']}" for a in daemon.ask("alarms")["alarms"] if a["life"] != "NORMAL"}
+            daemon.end()
+            if not obeys or alarm not in names or daemon.process.returncode != 0:
+                self.failures.append(f"{fault}: exit {daemon.process.returncode}, alarms {sorted(names)}")
+
+
+# A reading that is missing from the first second on raises an alarm, which the daemon saves.
+TROUBLED = """
+[[guard]]
+kind = "transducer"
+channel = "pressure_in"
+action = "indicate"
+[[sim.trouble]]
+kind = "missing"
+pressure = "pressure_in"
+from_s = 1.0
+to_s = 1000.0
+"""
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -212,6 +246,14 @@ def main():
         with_setpoints.write_text(re.sub(r"\[reference\].*?\n\n", '[reference]\nkind = "file"\nfile = '
                                          '"setpoints.csv"\n\n', (folder / "demo.toml").read_text(), flags=re.S))
         tries.reads(["spoolwatchd", "--config", with_setpoints, "--lcm-url", "", *settings, "--check"], setpoints, 78)
+        troubled = folder / "troubled.toml"
+        troubled.write_text((folder / "pressures.toml").read_text() + TROUBLED)
+        for fault, alarm in (("write_enospc:alarms.json:0", "not_saved"), ("write_eio:alarms.json:100", "not_saved"),
+                             ("sync_eio:alarms.json:0", "not_saved"), ("rename_eio:alarms.json:0", "not_saved"),
+                             ("write_enospc:history.log:0", "history_not_saved"),
+                             ("sync_eio:history.log:0", "history_not_saved"),
+                             ("write_eio:audit.log:0", "audit_lost"), ("sync_eio:audit.log:0", "audit_lost")):
+            tries.alarms(troubled, fault, f"alarms.{alarm}")
         # The daemon goes on, and says at its end what is not in the log.
         for kind in ("write_enospc", "write_eio"):
             bad = tries.run(["spoolwatchd", "--config", folder / "thesis_case1.toml", "--clock",

@@ -13,10 +13,11 @@ import time
 class Daemon:
     """spoolwatchd with a configuration of config/; ends with the `with` block.
 
-    keep: of "recorder" and "evidence" those that it writes to, in its own folder.
+    keep: of "recorder" and "evidence" those that it writes to, in its own folder; environment: beside that of
+    this process.
     """
 
-    def __init__(self, programs, config, settings=(), lcm_url="", keep=()):
+    def __init__(self, programs, config, settings=(), lcm_url="", keep=(), environment=None):
         self.programs = pathlib.Path(programs)
         self.folder = tempfile.TemporaryDirectory(prefix="spoolwatch-trouble-")
         os.chmod(self.folder.name, 0o755)
@@ -28,8 +29,8 @@ class Daemon:
                         *(f"{what}.folder={place / what if what in keep else ''}"
                           for what in ("evidence", "recorder")), *settings):
             command += ["--set", setting]
-        self.process = subprocess.Popen(command, stderr=open(self.log, "w"),
-                                        stdout=subprocess.DEVNULL)
+        self.process = subprocess.Popen(command, stderr=open(self.log, "w"), stdout=subprocess.DEVNULL,
+                                        env={**os.environ, **(environment or {})})
 
     def __enter__(self):
         deadline = time.monotonic() + 20
