@@ -70,6 +70,102 @@ backend = "modbus"
 channel = "enable"
 )";
 
+inline constexpr const char* kPressure = R"(
+[modbus.registers.supply]
+role = "input"
+address = 15
+type = "int16"
+scale = 1000.0
+[[input]]
+id = "supply"
+role = "supply_pressure"
+backend = "modbus"
+channel = "supply"
+[[guard]]
+kind = "pressure"
+channel = "supply_pressure"
+low_Pa = 5e6
+action = "latch"
+)";
+// The same pressure with a range, below which there is none.
+inline constexpr const char* kTransducer = R"(
+[modbus.registers.supply]
+role = "input"
+address = 15
+type = "int16"
+scale = 1000.0
+low = 5e6
+high = 1e7
+[[input]]
+id = "supply"
+role = "supply_pressure"
+backend = "modbus"
+channel = "supply"
+[[guard]]
+kind = "transducer"
+channel = "supply_pressure"
+action = "latch"
+)";
+// The register of the enable input, which a test can set, in the part of a chamber's transducer.
+inline constexpr const char* kChambers = R"(
+[modbus.registers.supply]
+role = "input"
+address = 15
+type = "int16"
+scale = 1000.0
+[modbus.registers.chamber]
+role = "input"
+address = 12
+scale = -2e7
+offset = 2e7
+[[input]]
+id = "supply"
+role = "supply_pressure"
+backend = "modbus"
+channel = "supply"
+[modbus.registers.other_chamber]
+role = "input"
+address = 17
+type = "int16"
+scale = 1000.0
+[[input]]
+id = "chamber"
+role = "pressure_in"
+backend = "modbus"
+channel = "chamber"
+[[input]]
+id = "other_chamber"
+role = "pressure_out"
+backend = "modbus"
+channel = "other_chamber"
+[[guard]]
+kind = "chambers"
+tolerance_Pa = 5e5
+action = "latch"
+)";
+// And in that of a second position sensor.
+inline constexpr const char* kDisagree = R"(
+[modbus.registers.spare]
+role = "rod"
+address = 12
+scale = 0.2
+offset = 0.105
+[[spare_rod]]
+id = "spare"
+backend = "modbus"
+channel = "spare"
+[[guard]]
+kind = "disagree"
+tolerance_m = 0.12
+action = "latch"
+)";
+inline constexpr const char* kSaturated = R"(
+[[guard]]
+kind = "saturated"
+time_s = 0.05
+action = "latch"
+)";
+
 inline constexpr const char* kPermit = R"(
 [permit]
 backend = "modbus"

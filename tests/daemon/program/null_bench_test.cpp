@@ -89,6 +89,16 @@ std::vector<Failure> causes() {
        kSpeed},
       {"guard following", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.2"); }, false, false,
        true, kFollowing},
+      {"guard saturated", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.3"); }, false, false,
+       true, kSaturated},
+      {"guard disagree", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false,
+       kDisagree},
+      {"guard pressure", [](Bench& b, Daemon&) { b.set("supply_pressure_Pa=x0.4"); }, false, true,
+       false, kPressure},
+      {"guard chambers", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false,
+       kChambers},
+      {"guard transducer", [](Bench& b, Daemon&) { b.set("supply_pressure_Pa=x0.4"); }, false, true,
+       false, kTransducer},
       {"enable lost", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false, kEnable},
   };
 }
