@@ -77,29 +77,68 @@ void refuse_spikes(const config::record::Record& record, const std::vector<doubl
       fmt::format("up to {:.0e} {}; leave the field empty where nothing was measured", most, unit));
 }
 
-/// -9999 and the like, far from all other positions, mark missing values in many loggers.
-void note_markers(const config::record::Record& record, Dataset& result) {
+/// Samples of a record without a gap: [begin, end).
+struct Segment {
+  std::size_t begin;
+  std::size_t end;
+};
+
+std::vector<Segment> segments_of(const config::record::Record& record) {
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i <= record.gaps.size(); ++i) {
+    segments.push_back({i == 0 ? 0 : record.gaps[i - 1],
+                        i == record.gaps.size() ? record.size() : record.gaps[i]});
+  }
+  return segments;
+}
+
+bool is_mark(double value_m, double mark_m) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(value_m - mark_m) <= kRounding * std::abs(mark_m);
+}
+
+/// -9999 and the like, far from all other positions, by which many loggers mark missing values; NaN
+/// where the record has none. `factor`: m in the unit of the file.
+double missing_mark_m(const std::vector<double>& y_m, double factor) {
+  constexpr double kFarOff = 0.1;  // the greatest of the others, in marks
   for (const double marker : {-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0}) {
-    for (const double scale : {1.0, 1e-3}) {
+    for (const double scale : {1.0, 1e-3, factor}) {
       const double value_m = marker * scale;
       double rest_m = 0.0;
-      std::size_t count = 0;
-      std::size_t first = 0;
-      for (std::size_t k = 0; k < record.size(); ++k) {
-        if (record.y_m[k] != value_m) {
-          rest_m = std::max(rest_m, std::abs(record.y_m[k]));
-        } else if (count++ == 0) {
-          first = k;
+      bool found = false;
+      for (const double one_m : y_m) {
+        if (is_mark(one_m, value_m)) {
+          found = true;
+        } else {
+          rest_m = std::max(rest_m, std::abs(one_m));
         }
       }
-      if (count == 0 || rest_m > 0.1 * std::abs(value_m)) continue;
-      result.notes.push_back(
-          fmt::format("{:.6g} m at {:.6g} s ({} times) looks like a mark of missing values: leave "
-                      "the field empty",
-                      value_m, record.t_s[first], count));
-      return;
+      if (found && rest_m < kFarOff * std::abs(value_m)) return value_m;
     }
   }
+  return std::nan("");
+}
+
+/// The segments without samples at `mark_m`, and their note: they are gaps.
+std::vector<Segment> without_marked(const config::record::Record& record,
+                                    const std::vector<Segment>& segments, double mark_m,
+                                    std::string& note) {
+  std::vector<Segment> rest;
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (const Segment& segment : segments) {
+    std::size_t begin = segment.begin;
+    for (std::size_t k = segment.begin; k < segment.end; ++k) {
+      if (!is_mark(record.y_m[k], mark_m)) continue;
+      if (count++ == 0) first = k;
+      if (k > begin) rest.push_back({begin, k});
+      begin = k + 1;
+    }
+    if (begin < segment.end) rest.push_back({begin, segment.end});
+  }
+  note = fmt::format("{:.6g} m at {:.6g} s ({} {}) marks missing values: they are gaps", mark_m,
+                     record.t_s[first], count, count == 1 ? "sample" : "samples");
+  return rest;
 }
 
 }  // namespace
@@ -117,11 +156,13 @@ Dataset dataset_of(const config::record::Record& record) {
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
+  double position_factor = 1.0;
   for (const config::record::ChannelOrigin& origin : record.origins) {
     if (origin.name == "u_" + record.command_unit) {
       result.command_column = {origin.header, origin.unit, origin.factor < 0.0};
     } else if (origin.name == "y_" + record.position_unit) {
       result.position_column = {origin.header, origin.unit, origin.factor < 0.0};
+      position_factor = origin.factor;
     }
   }
   if (record.sample_time_s > kSlowest_s) {
@@ -130,13 +171,15 @@ Dataset dataset_of(const config::record::Record& record) {
   }
   refuse_spikes(record, record.y_m, kFarthest_m, "position", "m");
   refuse_spikes(record, record.u_V, kGreatest_V, "command", "V");
-  note_markers(record, result);
+  std::vector<Segment> segments = segments_of(record);
+  const double mark_m = missing_mark_m(record.y_m, position_factor);
+  if (std::isfinite(mark_m)) {
+    segments = without_marked(record, segments, mark_m, result.notes.emplace_back());
+  }
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
   std::size_t left_out = 0;
   std::size_t longest = 0;
-  for (std::size_t i = 0; i <= record.gaps.size(); ++i) {
-    const std::size_t begin = i == 0 ? 0 : record.gaps[i - 1];
-    const std::size_t end = i == record.gaps.size() ? record.size() : record.gaps[i];
+  for (const auto& [begin, end] : segments) {
     longest = std::max(longest, end - begin);
     if (end - begin >= shortest) {
       append(result, record, begin, end);
@@ -144,14 +187,14 @@ Dataset dataset_of(const config::record::Record& record) {
       left_out += end - begin;
     }
   }
-  result.gaps = {record.gaps.size(), result.starts.size(), left_out};
+  result.gaps = {std::max<std::size_t>(1, segments.size()) - 1, result.starts.size(), left_out};
   const double length_s = static_cast<double>(result.size()) * result.sample_time_s;
   if (length_s < kLeast_s) {
     const std::string all = seconds(static_cast<double>(record.size()) * record.sample_time_s);
     const std::string what =
-        record.gaps.empty()
+        segments.size() < 2
             ? "is too short: " + all
-            : "is too short: of " + all + " in " + std::to_string(record.gaps.size() + 1) +
+            : "is too short: of " + all + " in " + std::to_string(segments.size()) +
                   " segments, the longest " +
                   seconds(static_cast<double>(longest) * record.sample_time_s) + ", " +
                   seconds(length_s) + " are in segments of " + seconds(kShortest_s) + " or more";

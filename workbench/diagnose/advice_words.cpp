@@ -189,6 +189,12 @@ std::string words_to_excite(const std::string& motion) {
   return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
 }
 
+std::string words_for_leaps() {
+  return "Leave out the samples that leap out of the motion (in the note below) and diagnose "
+         "again: "
+         "they alone leave an error that no model explains.";
+}
+
 std::string words_for_doubt() {
   return "A longer record, or one with more motion, tells whether it is missing.";
 }

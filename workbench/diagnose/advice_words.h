@@ -26,6 +26,8 @@ namespace selection = estimator::greybox::selection;
 [[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                                 const std::string& plant);
 
+/// For readings that leap out of the motion, which a note lists.
+[[nodiscard]] std::string words_for_leaps();
 /// For effects found of which none is established.
 [[nodiscard]] std::string words_for_doubt();
 /// For changes within a record, or for differences between records.

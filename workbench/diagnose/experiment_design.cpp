@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimator/greybox/reading_faults.h"
 #include "estimator/greybox/selection/discrimination.h"
 #include "estimator/parallel.h"
 #include "workbench/diagnose/advice_words.h"
@@ -72,6 +73,14 @@ std::vector<Option> options_for(const selection::SearchContext& context,
   return options;
 }
 
+/// True where a reading leaps out of the motion: no model explains it.
+bool leaps(const selection::DiagnosisProblem& problem) {
+  const std::vector<greybox::Dataset>& records = problem.data.records;
+  return std::any_of(records.begin(), records.end(), [](const greybox::Dataset& record) {
+    return !greybox::reading_faults(record).leaps.empty();
+  });
+}
+
 }  // namespace
 
 Advice advise(const selection::SearchContext& context,
@@ -118,7 +127,8 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
   if (found.verdict == selection::Verdict::not_excited) {
     result.advice = advice_to_excite(problem);
   } else if (found.verdict == selection::Verdict::unexplained && !found.search.interrupted) {
-    result.advice = advice_for_unexplained(found.where, problem.model.plant);
+    result.advice = leaps(problem) ? words_for_leaps()
+                                   : advice_for_unexplained(found.where, problem.model.plant);
   } else if (found.verdict == selection::Verdict::changing) {
     result.advice = words_for_changes(found.changing);
   } else if (found.verdict == selection::Verdict::undetermined && found.ambiguous.empty()) {

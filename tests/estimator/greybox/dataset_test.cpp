@@ -97,12 +97,31 @@ TEST(Dataset, NamesTheTimeOfASpikeThatNoRigHas) {
   EXPECT_THROW((void)dataset_of(spiked), config::schema::DataError);
 }
 
-TEST(Dataset, NotesAMarkOfMissingValues) {
-  config::record::Record marked = record(300);
+TEST(Dataset, TakesMarksOfMissingValuesForGaps) {
+  config::record::Record marked = record(900);
   EXPECT_TRUE(dataset_of(marked).notes.empty());
-  marked.y_m[100] = marked.y_m[200] = -9999.0;
-  ASSERT_EQ(dataset_of(marked).notes.size(), 1U);
-  EXPECT_THAT(dataset_of(marked).notes[0], HasSubstr("-9999 m at 1 s (2 times) looks like a mark"));
+  marked.y_m[300] = marked.y_m[301] = marked.y_m[600] = -9999.0;
+  const Dataset data = dataset_of(marked);
+  EXPECT_THAT(data.starts, ElementsAre(0U, 300U, 598U));
+  EXPECT_EQ(data.size(), 897U);
+  EXPECT_EQ(data.y_m[300], 302.0);
+  EXPECT_EQ(data.gaps.gaps, 2U);
+  ASSERT_EQ(data.notes.size(), 1U);
+  EXPECT_THAT(data.notes[0], HasSubstr("-9999 m at 3 s (3 samples) marks missing values"));
+}
+
+TEST(Dataset, KnowsTheMarkInTheUnitOfTheFile) {
+  config::record::Record marked = record(900);
+  for (double& y_m : marked.y_m) y_m *= 0.01;
+  const double degrees = 3.14159265358979 / 180.0;
+  config::record::ChannelOrigin& position = marked.origins.emplace_back();
+  position.name = "y_" + marked.position_unit;
+  position.factor = degrees;
+  marked.y_m[400] = -9999.0 * degrees;
+  EXPECT_EQ(dataset_of(marked).size(), 899U);
+  // a position among others is none
+  marked.y_m[400] = -9.0 * degrees;
+  EXPECT_EQ(dataset_of(marked).size(), 900U);
 }
 
 TEST(Dataset, GivesAPartWithItsOwnSegmentsAndSettling) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 #include "workbench/diagnose/advice_words.h"
 
@@ -132,6 +133,19 @@ TEST(AdviceForUnexplained, OffersNoFormulaForWhatGoesWithTime) {
 
 TEST(AdviceForUnexplained, StillSaysWhatToRecordWhenNothingWasFound) {
   EXPECT_THAT(advice_for_unexplained({}), HasSubstr("chamber pressures"));
+}
+
+TEST(AdviceForUnexplained, LeavesOutReadingsThatLeapFirst) {
+  const auto reading_m = [](double y_m, double t_s) {
+    const bool leaps = std::abs(t_s - 5.0) < 0.001 || std::abs(t_s - 12.5) < 0.001;
+    return leaps ? y_m + 1.5 : y_m;
+  };
+  const selection::SearchContext context = diagnose_test::servo_context(
+      {.rate_mps = diagnose_test::with_offset(0.0), .reading_m = reading_m});
+  const AdvisedDiagnosis d = workbench::diagnose::diagnose(context.problem, {});
+  EXPECT_EQ(d.diagnosis.verdict, selection::Verdict::unexplained);
+  EXPECT_THAT(d.advice, HasSubstr("samples that leap"));
+  EXPECT_THAT(d.advice, Not(HasSubstr("formula")));
 }
 
 TEST(Advice, NamesNoValveAndNoChambersWhereThePlantHasNone) {
