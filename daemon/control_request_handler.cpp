@@ -25,8 +25,9 @@ constexpr int kRequestsPerCall = 8;
 std::string hint(control::ArmingState state, const io::ControlRequest& given) {
   std::string prefix = std::string("not possible in state ") + control::to_string(state);
   if (given.kind == Kind::event && state != control::ArmingState::monitor) {
-    if (given.event == control::Event::stop) return prefix + ": the valve is at null already";
-    if (given.event == control::Event::reset) return prefix + ": nothing is latched";
+    if (given.event == control::Event::stop)
+      return prefix + ": null is commanded already; an axis that moves needs its supply cut";
+    if (given.event == control::Event::reset) return prefix + ": the loop is not latched";
   }
   switch (state) {
     case control::ArmingState::disarmed:

@@ -137,7 +137,8 @@ std::string portable_text(DaemonConfig& config) {
       if (!std::filesystem::path(field.path).is_absolute()) continue;
       std::string value = field.value;  // quoted
       while (value.ends_with("/\"")) value.erase(value.size() - 2, 1);
-      field.value = "\"" + value.substr(value.rfind('/') + 1);
+      const std::size_t slash = value.rfind('/');
+      field.value = "\"" + value.substr(slash == std::string::npos ? 1 : slash + 1);
     }
   }
   return config::schema::print_toml(tables);

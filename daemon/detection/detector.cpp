@@ -225,6 +225,10 @@ void Detector::update_alarm_file_alarms() {
     condition("alarms", "history_not_saved", Severity::minor,
               parts_.alarms.store->waiting_history() > 0,
               "changes of alarms wait until history.log can be written; the statistics lack them");
+    const std::int64_t given_up = parts_.alarms.store->lost_history();
+    condition("alarms", "history_lost", Severity::minor, given_up > history_lost_before_,
+              "changes of alarms could not be written to history.log");
+    history_lost_before_ = given_up;
   }
   if (parts_.alarms.audit == nullptr) return;
   const std::int64_t lost = parts_.alarms.audit->lost();

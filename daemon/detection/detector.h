@@ -112,6 +112,7 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
   std::int64_t overruns_before_ = 0;
   std::int64_t dropped_before_ = 0;
   std::int64_t audit_lost_before_ = 0;
+  std::int64_t history_lost_before_ = 0;
 };
 
 }  // namespace monitor::detection

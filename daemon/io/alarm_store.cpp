@@ -25,6 +25,8 @@ constexpr const char* kFormat = "spoolwatch alarms";
 constexpr int kVersion = 1;
 constexpr std::size_t kLargestFile = 16 << 20;
 constexpr std::size_t kMostUnwritten = 10'000;  // lines of the history
+/// Lines written together, synchronised once, so that other jobs of the writer do not wait long.
+constexpr std::size_t kMostAtOnce = 500;
 
 PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
   PersistedAlarm life;
@@ -139,8 +141,14 @@ void AlarmStore::append(const std::string& line, std::int64_t utc_us) {
 }
 
 void AlarmStore::write(History& history) {
-  while (!history.unwritten.empty() && history.file.try_append(history.unwritten.front())) {
-    history.unwritten.pop_front();
+  std::string lines;
+  std::size_t count = 0;
+  for (; count < std::min(kMostAtOnce, history.unwritten.size()); ++count) {
+    lines += history.unwritten[count];
+  }
+  if (count > 0 && history.file.try_append(lines)) {
+    history.unwritten.erase(history.unwritten.begin(),
+                            history.unwritten.begin() + static_cast<std::ptrdiff_t>(count));
   }
   history.waiting = history.unwritten.size();
 }

@@ -61,6 +61,8 @@ class AlarmStore {
   void note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us);
   /// Tries once more to write the lines of the history that a full disk kept back. One thread.
   void retry_history();
+  /// Lines of the history that were given up. Any thread.
+  [[nodiscard]] std::int64_t lost_history() const noexcept { return history_->file.lost(); }
   /// Lines of the history that wait for the disk. Any thread.
   [[nodiscard]] std::size_t waiting_history() const noexcept { return history_->waiting; }
 

@@ -92,52 +92,45 @@ std::vector<Segment> segments_of(const config::record::Record& record) {
   return segments;
 }
 
-bool is_mark(double value_m, double mark_m) {
+/// -9999 and the like, by which many loggers mark missing values; `factor`: m in the file's unit.
+bool is_mark(double value_m, double factor) {
   constexpr double kRounding = 1e-9;
-  return std::abs(value_m - mark_m) <= kRounding * std::abs(mark_m);
-}
-
-/// -9999 and the like, far from all other positions, by which many loggers mark missing values; NaN
-/// where the record has none. `factor`: m in the unit of the file.
-double missing_mark_m(const std::vector<double>& y_m, double factor) {
-  constexpr double kFarOff = 0.1;  // the greatest of the others, in marks
-  for (const double marker : {-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0}) {
-    for (const double scale : {1.0, 1e-3, factor}) {
-      const double value_m = marker * scale;
-      double rest_m = 0.0;
-      bool found = false;
-      for (const double one_m : y_m) {
-        if (is_mark(one_m, value_m)) {
-          found = true;
-        } else {
-          rest_m = std::max(rest_m, std::abs(one_m));
-        }
-      }
-      if (found && rest_m < kFarOff * std::abs(value_m)) return value_m;
+  for (const double mark : {999.0, 9999.0, 99999.0}) {
+    for (const double scale : {1.0, 1e-3, std::abs(factor)}) {
+      const double mark_m = mark * scale;
+      if (std::abs(std::abs(value_m) - mark_m) <= kRounding * mark_m) return true;
     }
   }
-  return std::nan("");
+  return false;
 }
 
-/// The segments without samples at `mark_m`, and their note: they are gaps.
-std::vector<Segment> without_marked(const config::record::Record& record,
-                                    const std::vector<Segment>& segments, double mark_m,
-                                    std::string& note) {
+/// True for each sample at a mark that is far from all positions that are none.
+std::vector<bool> missing_samples(const std::vector<double>& y_m, double factor) {
+  constexpr double kFarOff = 0.1;  // the greatest of the others, in marks
+  double rest_m = 0.0;
+  for (const double one_m : y_m) {
+    if (!is_mark(one_m, factor)) rest_m = std::max(rest_m, std::abs(one_m));
+  }
+  std::vector<bool> missing(y_m.size());
+  for (std::size_t k = 0; k < y_m.size(); ++k) {
+    missing[k] = is_mark(y_m[k], factor) && rest_m < kFarOff * std::abs(y_m[k]);
+  }
+  return missing;
+}
+
+/// The segments without missing samples, which are gaps.
+std::vector<Segment> without(const std::vector<bool>& missing,
+                             const std::vector<Segment>& segments) {
   std::vector<Segment> rest;
-  std::size_t count = 0;
-  std::size_t first = 0;
   for (const Segment& segment : segments) {
     std::size_t begin = segment.begin;
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
-      if (!is_mark(record.y_m[k], mark_m)) continue;
-      if (count++ == 0) first = k;
+      if (!missing[k]) continue;
       if (k > begin) rest.push_back({begin, k});
       begin = k + 1;
     }
     if (begin < segment.end) rest.push_back({begin, segment.end});
   }
-  note = fmt::format("{:.6g} m at {:.6g} s ({} {}) marks missing values: they are gaps", mark_m,
-                     record.t_s[first], count, count == 1 ? "sample" : "samples");
   return rest;
 }
 
@@ -172,9 +165,14 @@ Dataset dataset_of(const config::record::Record& record) {
   refuse_spikes(record, record.y_m, kFarthest_m, "position", "m");
   refuse_spikes(record, record.u_V, kGreatest_V, "command", "V");
   std::vector<Segment> segments = segments_of(record);
-  const double mark_m = missing_mark_m(record.y_m, position_factor);
-  if (std::isfinite(mark_m)) {
-    segments = without_marked(record, segments, mark_m, result.notes.emplace_back());
+  const std::vector<bool> missing = missing_samples(record.y_m, position_factor);
+  const auto first = std::find(missing.begin(), missing.end(), true) - missing.begin();
+  if (const auto count = std::count(missing.begin(), missing.end(), true); count > 0) {
+    segments = without(missing, segments);
+    result.notes.push_back(fmt::format(
+        "{:.6g} m at {:.6g} s ({} {}) marks missing values: they are gaps",
+        record.y_m[static_cast<std::size_t>(first)], record.t_s[static_cast<std::size_t>(first)],
+        count, count == 1 ? "sample" : "samples"));
   }
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
   std::size_t left_out = 0;

@@ -135,11 +135,14 @@ TEST_F(ControlRequestHandlerTest, SaysThatAStopOrAResetIsNotNeeded) {
   send(R"({"command": "stop"})");
   EXPECT_EQ(serve(), "");
   answer(next_command().number, RejectReason::state, ArmingState::latched);
-  EXPECT_THAT(serve(), HasSubstr("not possible in state LATCHED: the valve is at null already"));
+  EXPECT_THAT(
+      serve(),
+      HasSubstr("not possible in state LATCHED: null is commanded already; an axis that moves "
+                "needs its supply cut"));
   send(R"({"command": "reset"})");
   EXPECT_EQ(serve(), "");
   answer(next_command().number, RejectReason::state, ArmingState::disarmed);
-  EXPECT_THAT(serve(), HasSubstr("not possible in state DISARMED: nothing is latched"));
+  EXPECT_THAT(serve(), HasSubstr("not possible in state DISARMED: the loop is not latched"));
 }
 
 // A detector that hangs must not keep a stop from the loop.

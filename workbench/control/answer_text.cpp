@@ -100,11 +100,12 @@ std::string guard_value(const ordered_json& guard) {
     double factor;
     const char* name;
   };
-  constexpr std::array kUnits{Unit{"travel", 1e3, " mm"},     Unit{"following", 1e3, " mm"},
-                              Unit{"frozen", 1e3, " mm"},     Unit{"jump", 1e3, " mm"},
-                              Unit{"disagree", 1e3, " mm"},   Unit{"speed", 1e3, " mm/s"},
-                              Unit{"stale", 1e3, " ms"},      Unit{"saturated", 1.0, " V"},
-                              Unit{"pressure", 1e-5, " bar"}, Unit{"chambers", 1e-5, " bar"}};
+  constexpr std::array kUnits{Unit{"travel", 1e3, " mm"},      Unit{"following", 1e3, " mm"},
+                              Unit{"frozen", 1e3, " mm"},      Unit{"jump", 1e3, " mm"},
+                              Unit{"disagree", 1e3, " mm"},    Unit{"speed", 1e3, " mm/s"},
+                              Unit{"stale", 1e3, " ms"},       Unit{"saturated", 1.0, " V"},
+                              Unit{"pressure", 1e-5, " bar"},  Unit{"chambers", 1e-5, " bar"},
+                              Unit{"transducer", 1e-5, " bar"}};
   const auto value = guard.find("value");
   if (value == guard.end() || !value->is_number()) return "";
   const std::string kind = text_of(guard, "kind");

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "config/schema/joined.h"
@@ -32,7 +31,7 @@ std::string change_words(const selection::ParameterChange& change) {
     case selection::ChangeKind::record:
       break;
   }
-  if (std::isfinite(change.at_error_s)) text += fmt::format(" from {:.1f} s on", change.at_s);
+  if (change.is_dated) text += fmt::format(" from {:.1f} s on", change.at_s);
   return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);
 }
 

@@ -62,8 +62,8 @@ std::string remedy(const greybox::Dataset& data, const std::vector<greybox::Samp
     return fmt::format("; {} places, the first at {:.6g} s: mend the record", spans.size(),
                        data.t_s[spans.front().begin]);
   }
-  std::string text = "; to leave it out: --ignore";
-  for (const greybox::SampleRange& span : spans) text += " " + span_words(data, span);
+  std::string text = "; to leave it out:";
+  for (const greybox::SampleRange& span : spans) text += " --ignore " + span_words(data, span);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "config/schema/error.h"
 #include "estimator/greybox/validation/comparison.h"
@@ -31,6 +32,19 @@ replay::BacktestRules rules_with(const RunningDaemon& daemon, const fs::path& ba
   rules.pipeline = daemon.rules();
   rules.pipeline.bands_file = fs::absolute(bands).string();
   return rules;
+}
+
+/// True where an estimate was INVALID for more than half of the log: it has not been judged.
+bool is_mostly_invalid(const replay::BacktestRun& run) {
+  std::map<std::string, double> invalid_s;
+  for (const replay::Occurrence& each : run.after) {
+    if (!std::isnan(each.limit_s)) continue;
+    const double end_s = std::isnan(each.to_s) ? run.to_s : each.to_s;
+    invalid_s[each.alarm] += end_s - each.from_s;
+  }
+  const double most_s = 0.5 * (run.to_s - run.from_s);
+  return std::any_of(invalid_s.begin(), invalid_s.end(),
+                     [&](const auto& one) { return one.second > most_s; });
 }
 
 }  // namespace
@@ -99,14 +113,14 @@ std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
       const auto runs = replay::run_backtest(rules_with(daemon, daemon.bands_file()), std::nullopt,
                                              {log.string()});
       if (replay::passed_limits(runs.front().after).empty() &&
-          replay::passed_limits(runs.front().before).empty()) {
+          replay::passed_limits(runs.front().before).empty() && !is_mostly_invalid(runs.front())) {
         healthy.push_back(log.string());
       }
     } catch (const DataError&) {  // a log that cannot be replayed is no healthy one
     }
   }
   if (!healthy.empty()) return healthy;
-  throw RunError("no log without an alarm in the recorder's folder \"" +
+  throw RunError("no log with valid estimates and without an alarm in the recorder's folder \"" +
                  daemon.recorder_folder().string() + "\"; allowed: healthy ones by --record");
 }
 

@@ -258,6 +258,7 @@ ParameterChange described(const ChangeScore& score, const FitSummary& fitted,
     return std::isfinite(value) ? value : otherwise;
   };
   change.at_s = value_or(own + ".at_s", score.at_s);
+  change.is_dated = std::isfinite(fitted.value(own + ".at_s"));
   change.at_error_s = error_of(fitted, errors, own + ".at_s");
   change.duration_s = change.kind == ChangeKind::step ? 0.0
                       : change.kind == ChangeKind::ramp

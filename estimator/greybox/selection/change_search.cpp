@@ -25,9 +25,11 @@ constexpr int kScans = 3;
 /// Share of the record at its ends in which a step is none.
 constexpr double kEnds = 0.01;
 /// Samples about a change within which a load that sets in is the change's: a model that brings the
-/// gain before the lag instead of behind it is off by the lag there.
+/// gain before the lag instead of behind it is late by the lag.
 constexpr double kEdge_samples = 10.0;
 constexpr double kStandardErrors = 2.0;
+/// Twice the gain over a ramp from which on an exponential that has not settled is no ramp.
+constexpr double kNoRamp_nats = 20.0 * kEvidence_nats;
 /// Time constants after which an exponential has settled.
 constexpr double kSettledAfter = 3.0;
 
@@ -198,8 +200,9 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
           stages[chosen].model.fitted.value(name_of(proposals[chosen].score) + ".ramp_s"))) {
     const std::size_t settling =
         also(settling_from(proposals[chosen].score, stages[chosen].model.fitted));
-    // where it has not settled, the end value is a guess
-    if (!ends_beyond(record, proposals[settling], stages[settling])) {
+    // where it has not settled, the end value is a guess, to be stated only for want of a ramp
+    const bool settled = !ends_beyond(record, proposals[settling], stages[settling]);
+    if (settled || penalised(stages[settling]) < penalised(stages[chosen]) - kNoRamp_nats) {
       chosen = best_of(proposals, stages);
     } else {
       proposals.pop_back();
@@ -221,7 +224,7 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
 }
 
 /// True where the likeliest load sets in with a change, or where its ramp ends.
-bool is_edge(const ChangeSearch& search) {
+bool jump_is_a_change(const ChangeSearch& search) {
   const double at_s = search.innovations.jump.time_s;
   const double edge_s = kEdge_samples * search.context.problem.data.sample_time_s;
   return std::any_of(
@@ -247,7 +250,7 @@ ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
   }
   search.innovations.final = std::move(stage);
   weigh_remainder(search.context, search.innovations);
-  if (is_edge(search)) search.innovations.jump = {};
+  if (jump_is_a_change(search)) search.innovations.jump = {};
   return search;
 }
 
@@ -269,27 +272,29 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
   return found;
 }
 
+/// A held gain has no error before the change.
 bool is_clear_of_errors(const ParameterChange& change) {
-  const double error = std::hypot(change.from_error, change.to_error);
-  return !(std::abs(change.to - change.from) < kStandardErrors * error);
+  const double from_error = std::isfinite(change.from_error) ? change.from_error : 0.0;
+  const double error = std::hypot(from_error, change.to_error);
+  return std::abs(change.to - change.from) > kStandardErrors * error;
 }
 
 /// Held-out error of a simulation with the changes.
-double left_m(const ChangeSearch& search) {
+double validation_rms_m(const ChangeSearch& search) {
   return simulated(search.context, search.innovations.final.model.fitted).validation_rms_m;
 }
 
-/// True where a simulation with the changes leaves clearly less than one with the others: what the
-/// likelihood gains in a pause of the motion is nothing to be stated.
+/// True where a simulation with the changes leaves clearly less than one with the others: the
+/// likelihood may gain in a pause of the motion, where nothing is learned of the model.
 bool simulates_better(const ChangeSearch& changes, const ChangeSearch& others) {
-  return left_m(changes) < (1.0 - kRivals) * left_m(others);
+  return validation_rms_m(changes) < (1.0 - kRivals) * validation_rms_m(others);
 }
 
 /// True where no change can be stated beside those found: nothing of the motion is left, and no
 /// simulation is clearly better.
 bool is_complete(const ChangeSearch& search) {
   return !search.innovations.physics_missing() &&
-         (1.0 - kRivals) * left_m(search) <= search.context.problem.data.noise_floor_m;
+         (1.0 - kRivals) * validation_rms_m(search) <= search.context.problem.data.noise_floor_m;
 }
 
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the

@@ -253,8 +253,8 @@ std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
 
 /// Effects whose rivals are sought: those that gain little beside what physics is missing are not
 /// established anyway.
-std::vector<std::string> worth_rivals(const InnovationSearch& innovations,
-                                      const Diagnosis& result) {
+std::vector<std::string> effects_with_rivals(const InnovationSearch& innovations,
+                                             const Diagnosis& result) {
   std::vector<std::string> effects = innovations.final.model.added;
   if (!innovations.physics_missing()) return effects;
   std::erase_if(effects, [&](const auto& name) { return !is_clear_of_remainder(result, name); });
@@ -311,7 +311,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
     take_parameters(innovations.final, result);
   }
   for (const InnovationRivals& rivals :
-       find_rivals(search, innovations, worth_rivals(innovations, result))) {
+       find_rivals(search, innovations, effects_with_rivals(innovations, result))) {
     const Separable& separable = search.options.separable;
     const bool separates =
         search.cancelled() || (separable && separable(search, rivals.explanations, rivals.names));

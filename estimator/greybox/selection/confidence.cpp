@@ -181,6 +181,18 @@ bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect
   return false;
 }
 
+/// True where two or more parameters of the plant are fitted and all of them are at their bounds:
+/// the plant is another.
+bool is_another_plant(const Diagnosis& diagnosis) {
+  std::size_t count = 0;
+  for (const ParameterValue& p : diagnosis.parameters) {
+    if (p.name.find('.') != std::string::npos) continue;
+    if (!p.at_bound) return false;
+    ++count;
+  }
+  return count > 1;
+}
+
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
 std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
@@ -234,6 +246,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   std::vector<std::optional<Doubt>> doubts;
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
+    if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
     if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
       doubt = Doubt::chance;

@@ -21,6 +21,7 @@ struct ParameterChange {
   std::string parameter;  ///< "damping_N_s_per_m", "null_bias.offset_V"
   ChangeKind kind = ChangeKind::step;
   double at_s = 0.0;        ///< its beginning, in the record's time
+  bool is_dated = false;    ///< `at_s` is estimated
   double duration_s = 0.0;  ///< 0 for a step
   double from = 0.0;
   double to = 0.0;

@@ -100,7 +100,8 @@ TEST(Dataset, NamesTheTimeOfASpikeThatNoRigHas) {
 TEST(Dataset, TakesMarksOfMissingValuesForGaps) {
   config::record::Record marked = record(900);
   EXPECT_TRUE(dataset_of(marked).notes.empty());
-  marked.y_m[300] = marked.y_m[301] = marked.y_m[600] = -9999.0;
+  marked.y_m[300] = marked.y_m[301] = -9999.0;
+  marked.y_m[600] = 9999.0;
   const Dataset data = dataset_of(marked);
   EXPECT_THAT(data.starts, ElementsAre(0U, 300U, 598U));
   EXPECT_EQ(data.size(), 897U);

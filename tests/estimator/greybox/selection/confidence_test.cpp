@@ -62,6 +62,20 @@ TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
 }
 
+TEST(Confidence, WhereAllOfThePlantIsAtItsBoundsNoEffectIsEstablished) {
+  Diagnosis d;
+  d.verdict = Verdict::missing;
+  d.missing = {"transport_delay"};
+  d.parameters = {{"gain_mps_per_V", 0.2, 0.0, true},
+                  {"time_constant_s", 1.0, 0.0, true},
+                  {"transport_delay.delay_s", 0.054, 0.001, false}};
+  EXPECT_THAT(named(d), ElementsAre("transport_delay stand_in"));
+  weigh_doubts(d);
+  EXPECT_EQ(d.verdict, Verdict::undetermined);
+  d.parameters[0].at_bound = false;
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 // The best of 40 gains with p 0.0005 once in 50 healthy records.
 TEST(Confidence, TheBestOfManyMayGainALittleByChance) {
   Diagnosis d;
