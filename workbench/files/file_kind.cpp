@@ -13,9 +13,10 @@
 namespace workbench::files {
 namespace {
 
-constexpr int kComments = 1000;  // as many lines may stand above the first key
-constexpr std::size_t kLongest = 4096;
-constexpr std::size_t kLooked[] = {8U << 10U, 256U << 10U};  // bytes, the second where need be
+constexpr int kComments = 1000;         // as many lines may stand above the first key
+constexpr std::size_t kLongest = 4096;  // bytes of a line that is no comment
+constexpr std::size_t kLooked[] = {8U << 10U, 256U << 10U,
+                                   16U << 20U};  // bytes, more where need be
 
 /// By the first line that says something; none: it is not in `begin`, the file's first bytes.
 std::optional<FileKind> kind_by_line(const std::string& begin, bool whole) {
@@ -24,11 +25,12 @@ std::optional<FileKind> kind_by_line(const std::string& begin, bool whole) {
   std::istringstream in(begin);
   std::string line;
   for (int i = 0; i < kComments && std::getline(in, line); ++i) {
-    if (line.size() > kLongest) return FileKind::other;
-    if (in.eof() && !whole) return std::nullopt;  // the line may go on
     if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
+    const bool comment = first == std::string::npos || line[first] == '#';
+    if (!comment && line.size() > kLongest) return FileKind::other;
+    if (in.eof() && !whole) return std::nullopt;  // the line may go on
+    if (comment) continue;
     if (line.starts_with("sep=") || line.starts_with("\"sep=")) continue;  // Excel's first line
     if (line.find('\0') != std::string::npos) return FileKind::other;
     if (std::regex_match(line, toml_line)) return FileKind::toml;

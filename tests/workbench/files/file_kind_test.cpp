@@ -1,4 +1,4 @@
-// What a file is, by its beginning.
+// The kind of a file, by its beginning.
 #include "workbench/files/file_kind.h"
 
 #include <gtest/gtest.h>
@@ -33,6 +33,11 @@ TEST(FileKind, IsSeenByTheFirstLineThatSaysSomething) {
     EXPECT_EQ(kind_of_text(text + "schema_version = 1\n"), FileKind::toml) << comments;
   }
   EXPECT_EQ(kind_of_text("# a note\nt_s,u_V,y_m"), FileKind::record) << "no line end";
+  for (const std::size_t bytes : {5'000U, 9'000U, 300'000U}) {
+    const std::string comment = "# " + std::string(bytes, 'c') + "\n";
+    EXPECT_EQ(kind_of_text(comment + "t_s,u_V,y_m\n0,1,0\n"), FileKind::record) << bytes;
+    EXPECT_EQ(kind_of_text(comment + "schema_version = 1\n"), FileKind::toml) << bytes;
+  }
 }
 
 TEST(FileKind, DevicesAndPipesAreLeftUnread) {
