@@ -22,6 +22,15 @@ TEST(ErrorLine, KeepsBeginningAndEndOfAKeyThatIsVeryLong) {
   EXPECT_THAT(line, EndsWith("kkk] rate_Hz: is unknown"));
 }
 
+TEST(ErrorLine, CutsBytesThatAreNoTextToo) {
+  const std::string line = error_line("a", std::string(2000, '\x80'), "");
+  EXPECT_EQ(line.size(), 3 + 700 + 3 + 197U);
+}
+
+TEST(ErrorLine, CutsAllowedValuesToo) {
+  EXPECT_LT(error_line("a", "is unknown", std::string(100'000, 'k')).size(), 4100U);
+}
+
 TEST(ErrorLine, CutsBetweenCharacters) {
   std::string text;
   for (int i = 0; i < 2000; ++i) text += "\u00e4";
