@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <cctype>
 #include <string_view>
 
 #include "config/record/layout.h"
@@ -47,18 +47,48 @@ bool is_limit_word(std::string_view field) {
   return std::find(kWords.begin(), kWords.end(), folded(field)) != kWords.end();
 }
 
-/// The number of "50 mm/V", "x 0.1" and "5"; none where the text begins with no number.
-std::optional<double> leading_number(std::string_view field, char decimal) {
-  while (!field.empty() && !is_digit(field.front()) && field.front() != '-') {
-    const bool mark = field.front() == 'x' || field.front() == '*' || field.front() == '+' ||
-                      is_blank(field.front()) || static_cast<unsigned char>(field.front()) >= 0x80;
-    if (!mark) return std::nullopt;
-    field.remove_prefix(1);
+/// "V/V" of "1 V/V", "/1" of "1/1", or nothing.
+bool is_ratio_of_one(std::string_view unit) {
+  const bool brackets = unit.size() > 2 && ((unit.front() == '[' && unit.back() == ']') ||
+                                            (unit.front() == '(' && unit.back() == ')'));
+  if (brackets) unit = trimmed(unit.substr(1, unit.size() - 2));
+  if (unit.empty() || unit == "-" || unit == "/1" || unit == ":1") return true;
+  const std::size_t stroke = unit.find('/');
+  if (stroke == std::string_view::npos || stroke == 0) return false;
+  return trimmed(unit.substr(0, stroke)) == trimmed(unit.substr(stroke + 1));
+}
+
+/// "1", "x 1", "1.0" and "1 V/V"; of offsets "0" and "0 mm".
+bool changes_nothing(std::string_view field, bool offset, char decimal) {
+  for (const std::string_view mark : {"x", "*", "+", "\xC3\x97", "\xC2\xB7"}) {
+    if (field.starts_with(mark)) field = trimmed(field.substr(mark.size()));
   }
+  const std::size_t end = std::min(field.find_first_not_of("0123456789.,-+eE"), field.size());
+  const std::string_view number = field.substr(0, end);
+  const std::string_view unit = trimmed(field.substr(end));
+  // "1.000" beside decimal commas may be a thousand, "1.0" is none.
+  constexpr std::size_t kThousand = 5;
   double value = 0.0;
-  const std::string_view number = without_unit(field.substr(0, field.find(' ')));
-  if (!parse_number(number, decimal, value)) return std::nullopt;
-  return value;
+  const bool read = parse_number(number, decimal, value) ||
+                    ((offset || number.size() != kThousand) &&
+                     parse_number(number, decimal == '.' ? ',' : '.', value));
+  if (!read || value != (offset ? 0.0 : 1.0)) return false;
+  return offset ? std::none_of(unit.begin(), unit.end(), is_digit) : is_ratio_of_one(unit);
+}
+
+/// True for all that stands for a number or a fraction: "1/100", "10^-3", "div 10", "Zehntel".
+bool states_number(std::string_view field) {
+  return std::any_of(field.begin(), field.end(), is_digit) || name_has_scale(field);
+}
+
+/// "1/100", "x 0.1", ".001": no name, no unit.
+bool begins_as_factor(std::string_view field) {
+  const std::size_t digit = field.find_first_of("0123456789");
+  return digit != std::string_view::npos &&
+         std::all_of(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(digit), [](char c) {
+           const auto byte = static_cast<unsigned char>(c);
+           return c == 'x' || byte >= 0x80 || std::isalpha(byte) == 0;
+         });
 }
 
 /// ";x 1;x 0.1", factors without a word in front.
@@ -86,11 +116,21 @@ bool is_offset_word(std::string_view field) {
 /// "Factor", "Scale", "Gain [mm/V]": a number that multiplies. An oscilloscope's vertical scale is
 /// that of its screen, a controller's gain a setting.
 bool is_factor_word(std::string_view field) {
-  constexpr std::array<std::string_view, 12> kParts{
-      "factor", "faktor",      "facteur",         "gain", "scal", "skal", "multipli", "sensitiv",
-      "slope",  "empfindlich", "verst\xC3\xA4rk", "ratio"};
-  constexpr std::array<std::string_view, 6> kOthers{"vertical", "horizontal", "vscale",
-                                                    "hscale",   "controller", "regler"};
+  constexpr std::array<std::string_view, 12> kParts{"factor",
+                                                    "faktor",
+                                                    "facteur",
+                                                    "gain",
+                                                    "scal",
+                                                    "skal",
+                                                    "multipli",
+                                                    "sensitiv",
+                                                    "slope",
+                                                    "empfindlich",
+                                                    "verst\xC3\xA4rkung",
+                                                    "ratio"};
+  // "Duration" and "calibration" are no ratios.
+  constexpr std::array<std::string_view, 8> kOthers{
+      "vertical", "horizontal", "vscale", "hscale", "controller", "regler", "ration", "against"};
   const std::string word = folded(field);
   return !is_limit_word(field) && has_any(word, kParts) && !has_any(word, kOthers);
 }
@@ -106,7 +146,7 @@ bool is_limit_line(const std::vector<std::string>& fields, char decimal) {
     if (is_missing(field)) continue;
     if (is_range(field, decimal)) {
       ++ranges;
-    } else if (is_bound(field, decimal) || (factors && leading_number(field, decimal))) {
+    } else if (is_bound(field, decimal) || (factors && begins_as_factor(field))) {
       ++numbers;
     } else if (!word && ranges == 0 && numbers == 0 &&
                (is_limit_word(field) || is_factor_word(field) || is_offset_word(field))) {
@@ -131,8 +171,9 @@ std::vector<std::string> stated_factors(const std::vector<std::string>& fields, 
   if (!marked && !offset && !is_factor_word(word)) return {};
   std::vector<std::string> factors(fields.size());
   for (std::size_t c = marked ? first : first + 1; c < fields.size(); ++c) {
-    const std::optional<double> value = leading_number(trimmed(fields[c]), decimal);
-    if (!value || *value == (offset ? 0.0 : 1.0)) continue;
+    const std::string_view field = trimmed(fields[c]);
+    if (is_missing(field) || !states_number(field)) continue;
+    if (changes_nothing(field, offset, decimal)) continue;
     factors[c] = (marked ? "" : record::quoted(word) + " ") + record::quoted(fields[c]);
   }
   return factors;

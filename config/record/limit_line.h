@@ -12,8 +12,8 @@ namespace config::record {
 /// nothing.
 [[nodiscard]] bool is_limit_line(const std::vector<std::string>& fields, char decimal);
 
-/// For each field, "'Faktor' '0.001'" where the line states factors or offsets that change a
-/// number; empty where not. No element for a line of another kind.
+/// For each field, "'Faktor' '0.001'" where the line states anything but a factor of 1 or an
+/// offset of 0; empty where not. No element for a line of another kind.
 [[nodiscard]] std::vector<std::string> stated_factors(const std::vector<std::string>& fields,
                                                       char decimal);
 

@@ -209,7 +209,7 @@ class FormFinder {
       form_.unit_line = units->line + 1;
     }
     refuse_units_of_first_row(above);
-    note_factors();
+    note_factors(header, units);
     for (auto each = above.rbegin(); each != above.rend(); ++each) {  // in the order of the file
       const Candidate& candidate = *each;
       if (&candidate == units || candidate.commented) continue;
@@ -244,11 +244,21 @@ class FormFinder {
                    kOneUnit);
   }
 
-  /// Factors and offsets of the lines above the rows that have as many fields.
-  void note_factors() {
+  /// Notes the factors and offsets of the lines above the rows that have as many fields. A word and
+  /// one number name no column: that line is reported.
+  void note_factors(const Candidate* header, const Candidate* units) {
     for (std::size_t i = 0; i < first_; ++i) {
+      if ((header != nullptr && header->line == i) || (units != nullptr && units->line == i)) {
+        continue;
+      }
       std::vector<std::string> fields;
-      if (!names_in(without_comment_mark(lines_[i].text), fields)) continue;
+      const std::string_view line = without_comment_mark(lines_[i].text);
+      if (!names_in(line, fields)) {
+        if (states_one_factor(line)) {
+          form_.passed.push_back({i + 1, std::string(trimmed(lines_[i].text))});
+        }
+        continue;
+      }
       const std::vector<std::string> stated = stated_factors(fields, form_.dialect.decimal);
       if (stated.empty()) continue;
       form_.factors.resize(form_.kinds.size());
@@ -256,6 +266,18 @@ class FormFinder {
         if (!stated[c].empty()) form_.factors[c].push_back({i + 1, stated[c]});
       }
     }
+  }
+
+  /// "Faktor Weg;0.1", "Faktor Weg = 0.1"
+  [[nodiscard]] bool states_one_factor(std::string_view line) const {
+    for (const char separator : {form_.dialect.separator, ':', '='}) {
+      std::vector<std::string> fields = split_fields(line, separator);
+      std::erase_if(fields, [](const std::string& field) { return field.empty(); });
+      if (fields.size() != 2) continue;
+      const std::vector<std::string> stated = stated_factors(fields, form_.dialect.decimal);
+      if (!stated.empty() && !stated.back().empty()) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] RowsBelow rows_below(bool named) const {

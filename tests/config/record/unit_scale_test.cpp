@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "config/record/layout.h"
 #include "config/record/limit_line.h"
@@ -92,6 +93,48 @@ TEST(StatedFactors, AreThoseThatChangeANumber) {
   EXPECT_THAT(stated_factors({"Full scale", "10", "600"}, '.'), IsEmpty());
   EXPECT_THAT(stated_factors({"Vertical Scale", "2", "0.5"}, '.'), IsEmpty());  // of the screen
   EXPECT_THAT(stated_factors({"Controller gain", "2", ""}, '.'), IsEmpty());    // a setting
+}
+
+TEST(StatedFactors, AreAllButOne) {
+  for (const char* other : {"1/100", "10^-3", "1*10^-3",
+                            "1\xC2\xB7"
+                            "10\xE2\x81\xBB\xC2\xB3",
+                            "1 x 10^-3", "1 000", "1:10", "/10", ".001", "div 10", "1.000,5",
+                            "1 V/mm", "50 mm/V", "-1", "1 mm", "Zehntel", "1,000.5", "0"}) {
+    for (const char decimal : {'.', ','}) {
+      EXPECT_THAT(stated_factors({"Faktor", "1", other}, decimal),
+                  ElementsAre("", "", "'Faktor' '" + std::string(other) + "'"))
+          << decimal;
+    }
+    expect_bad(std::string("Zeit [s];Ventil [V];Weg [mm]\nFaktor;1;") + other +
+                   "\n0,000;0,0;0,1\n0,005;2,3;0,2\n0,010;1,3;0,3\n",
+               ":1", std::string("column Weg [mm] has 'Faktor' '") + other + "' in line 2");
+  }
+  for (const char* one : {"1", "1.0", "1,0", "1.000000e+00", "x 1", "*1", "1 V/V", "1 [mm/mm]",
+                          "1:1", "1/1", "1 -", "", "-", "NaN"}) {
+    EXPECT_THAT(stated_factors({"Faktor", "", one}, '.'), ElementsAre("", "", "")) << one;
+  }
+  for (const char* zero : {"0", "0.0", "-0", "0 mm", "0,000", "-"}) {
+    EXPECT_THAT(stated_factors({"Offset", "", zero}, '.'), ElementsAre("", "", "")) << zero;
+  }
+  EXPECT_THAT(stated_factors({"Offset", "", "0 + 5 mm"}, '.'),
+              ElementsAre("", "", "'Offset' '0 + 5 mm'"));
+}
+
+TEST(StatedFactors, AreNoneInNamesAndNotes) {
+  const Record names = record_test::read(
+      "Scale time [s];Command 1 [V];Position 2 [mm]\n0;1;0.1\n0.005;2;0.2\n0.010;3;0.3\n");
+  EXPECT_THAT(names.notes, IsEmpty());
+  EXPECT_THAT(stated_factors({"Verst\xC3\xA4rker", "MX440", "MX440"}, '.'), IsEmpty());
+  EXPECT_THAT(stated_factors({"Calibration", "2024", "3"}, '.'), IsEmpty());
+}
+
+TEST(StatedFactors, OfNoColumnAreSaid) {
+  for (const char* line : {"Faktor Weg;0.1", "# Faktor Weg: 0.1", "Faktor Weg = 1/10"}) {
+    const Record record = record_test::read(
+        std::string(line) + "\nZeit [s];Ventil [V];Weg [mm]\n0;0;0.1\n0.005;2;0.2\n0.01;1;0.3\n");
+    EXPECT_THAT(record.notes, ElementsAre(HasSubstr(line)));
+  }
 }
 
 TEST(StatedFactors, MayHaveUnitsOrNoWordInFront) {
