@@ -131,6 +131,7 @@ std::string with_plain_exponents(std::string_view text) {
 
 bool has_open_scale(std::string_view unit, bool (*is_unit)(std::string_view)) {
   unit = trimmed(unit);
+  if (unit.size() > kMostUnitBytes) return false;
   for (std::size_t end = unit.size(); end-- > 1;) {
     if (is_unit(trimmed(unit.substr(0, end))) && is_marked(unit.substr(end), false)) return true;
   }

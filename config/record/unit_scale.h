@@ -2,6 +2,7 @@
 // and "[10 mm]" do not: the numbers may be multiplied, or to be multiplied, or the range is meant.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,10 @@ struct UnitScale {
 
 /// "10^-3 m" for "10⁻³ m".
 [[nodiscard]] std::string with_plain_exponents(std::string_view text);
+
+/// Bytes of a unit with a scale; what is longer is none. It bounds the time that a long header
+/// takes.
+inline constexpr std::size_t kMostUnitBytes = 64;
 
 /// True where a unit stands beside a scale of several readings: "mm*10", "mm/10", "x 0.1 mm",
 /// "10 mm". `is_unit` says which texts are units.

@@ -92,6 +92,7 @@ bool any_spelling(const KnownUnit& unit, const Matches& matches) {
 }
 
 const KnownUnit* find_unit(std::string_view text) {
+  if (text.size() > kMostUnitBytes) return nullptr;
   for (const KnownUnit& unit : kUnits) {
     if (any_spelling(unit, [&](std::string_view spelling) { return spelling == text; })) {
       return &unit;
@@ -231,7 +232,8 @@ HeaderText split_header(std::string_view whole) {
     if (!found.name.empty() && !letter && !word && found.unit.si != "1") return found;
   }
   // The unit may have a stroke of its own: "v/m/s".
-  for (std::size_t at = whole.find('/'); at != std::string_view::npos;
+  const std::size_t begin = whole.size() - std::min(whole.size(), kMostUnitBytes);
+  for (std::size_t at = whole.find('/', begin); at != std::string_view::npos;
        at = whole.find('/', at + 1)) {
     HeaderText found = split(at, at + 1, true);
     // "Flow l/h", "Speed km/h" are rates
@@ -310,6 +312,11 @@ std::string utf8_text(std::string_view text) {
     bool utf8 = byte < 0xF5 && i + more < text.size() && (more > 0 || byte < 0x80);
     for (std::size_t k = 1; utf8 && k <= more; ++k) {
       utf8 = (static_cast<unsigned char>(text[i + k]) & 0xC0U) == 0x80U;
+    }
+    if (utf8 && more > 1) {  // no overlong form, no surrogate, nothing beyond U+10FFFF
+      const auto second = static_cast<unsigned char>(text[i + 1]);
+      utf8 = (byte != 0xE0 || second >= 0xA0) && (byte != 0xED || second < 0xA0) &&
+             (byte != 0xF0 || second >= 0x90) && (byte != 0xF4 || second < 0x90);
     }
     if (utf8) {
       result.append(text.substr(i, more + 1));

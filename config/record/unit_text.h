@@ -47,7 +47,7 @@ struct HeaderText {
 /// Names alike but for case, blanks and punctuation are equal: "Valve cmd" and "valve_cmd".
 [[nodiscard]] std::string folded(std::string_view name);
 
-/// Bytes that are no UTF-8 are Latin-1 and become UTF-8.
+/// Bytes that are no UTF-8 (RFC 3629) are Latin-1 and become UTF-8.
 [[nodiscard]] std::string utf8_text(std::string_view text);
 
 /// The first `bytes` of a UTF-8 text, or less: no character is cut.

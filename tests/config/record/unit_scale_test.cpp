@@ -76,6 +76,18 @@ TEST(UnitScale, NumbersOfChannelsAreNoScales) {
   EXPECT_FALSE(parse_header("Density [kg/m3]").scaled);
 }
 
+TEST(UnitScale, LongHeadersAreSoughtNoFurtherThanAUnitIsLong) {
+  static std::size_t asked = 0;
+  for (const char* part : {"x", " ", "/", "mm*10 ", "1/"}) {
+    std::string text = "Position ";
+    while (text.size() < 100'000) text += part;
+    asked = 0;
+    EXPECT_FALSE(has_open_scale(text + "]", [](std::string_view) { return ++asked == 0; }));
+    EXPECT_LE(asked, kMostUnitBytes + 1) << part;
+    EXPECT_FALSE(parse_header(text + "]").unit.known()) << part;
+  }
+}
+
 TEST(UnitScale, CellsHaveNone) {
   const Record record = record_test::read(
       "t_s,u_V,y_m,p\n0,1,0.1,2.1000 bar\n0.005,2,0.2,3.0100 bar\n0.010,3,0.3,4.0010 bar\n");
@@ -177,6 +189,17 @@ TEST(Messages, AreUtf8WhateverTheFile) {
       record_test::read("t_s;u_V;y_m\n;Verst\xE4rker;\n0;1;0.1\n0.005;2;0.2\n0.010;3;0.3\n");
   ASSERT_EQ(record.notes.size(), 1U);
   EXPECT_THAT(record.notes[0], HasSubstr("Verst\xC3\xA4rker"));
+}
+
+TEST(Messages, BytesThatEncodeNoCharacterAreLatin1) {
+  for (const char* bad :
+       {"\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xF0\x80\x80\x80", "\xC0\x80"}) {
+    EXPECT_EQ(utf8_text(bad).size(), 2 * std::string_view(bad).size()) << bad;
+  }
+  for (const char* good :
+       {"\xE0\xA0\x80", "\xED\x9F\xBF", "\xF4\x8F\xBF\xBF", "\xF0\x90\x80\x80"}) {
+    EXPECT_EQ(utf8_text(good), good);
+  }
 }
 
 TEST(Comments, BetweenRowsAreSaid) {
