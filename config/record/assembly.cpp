@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
+#include "config/record/column_words.h"
 #include "config/record/interpolation.h"
 #include "config/record/layout.h"
 #include "config/record/time_grid.h"
@@ -191,9 +193,24 @@ class Assembly {
     return file_.place(row_.empty() || i >= row_.size() ? i : row_[i]);
   }
 
-  /// True where times stand still and never go back.
-  [[nodiscard]] bool times_repeat() const {
-    return std::is_sorted(record_.t_s.begin(), record_.t_s.end());
+  [[noreturn]] void refuse_grid(const schema::DataError& uneven) const {
+    const Values& t_s = record_.t_s;
+    if (const std::optional<UnevenTick> odd = find_uneven_tick(t_s)) {
+      throw bad_data(
+          place(odd->first),
+          fmt::format("{} rows between {:.9g} s and {:.9g} s, {} elsewhere: rows are "
+                      "missing, or the rate changes",
+                      odd->samples, t_s[odd->first], t_s[odd->first] + odd->tick_s, odd->usual),
+          "as many rows in every tick of the clock, or --map t=RATEHz, which takes the "
+          "rows as they follow");
+    }
+    if (share_ticks(t_s)) {
+      throw schema::DataError(
+          std::string(uneven.what()) +
+          ": its clock is too coarse to tell the rate; state it with --map t=RATEHz");
+    }
+    if (t_s.size() < 3 || !increases(t_s)) throw schema::DataError(uneven.what());
+    throw schema::DataError(std::string(uneven.what()) + "; or --resample, which interpolates");
   }
 
   void take_grid() {
@@ -204,16 +221,7 @@ class Assembly {
       record_.gaps = std::move(grid.gaps);
     } catch (const schema::DataError& uneven) {
       std::optional<NominalGrid> grid = find_nominal_grid(record_.t_s);
-      if (!grid) {
-        const bool rate = std::string_view(uneven.what()).find("unevenly") != std::string::npos;
-        if (!rate && times_repeat()) {
-          throw schema::DataError(std::string(uneven.what()) +
-                                  ": its clock is too coarse to tell the rate; state it with "
-                                  "--map t=RATEHz");
-        }
-        if (!rate) throw;
-        throw schema::DataError(std::string(uneven.what()) + "; or --resample, which interpolates");
-      }
+      if (!grid) refuse_grid(uneven);
       record_.t_s = std::move(grid->t_s);
       record_.sample_time_s = grid->grid.sample_time_s;
       record_.gaps = std::move(grid->grid.gaps);

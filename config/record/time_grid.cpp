@@ -75,15 +75,55 @@ constexpr std::size_t kFewestForNominal = 10;
 /// Rows within whole ticks of a clock that several share, for an error of the rate below 0.25 %.
 constexpr double kFewestInTicks = 400.0;
 
-/// The period of rows that share ticks: over whole ticks alone, as the first and the last are cut
-/// off anywhere. 0: too few rows.
-double period_in_ticks(const std::vector<double>& t_s, const std::vector<double>& index) {
-  std::size_t first = 1;
-  std::size_t last = t_s.size() - 1;
-  while (first < last && t_s[first] == t_s[first - 1]) ++first;
-  while (first < last && t_s[last] == t_s[last - 1]) --last;
-  const double rows = index[last] - index[first];
-  return rows >= kFewestInTicks ? (t_s[last] - t_s[first]) / rows : 0.0;
+/// Rows with one time.
+struct Tick {
+  std::size_t first = 0;
+  std::size_t rows = 0;
+};
+
+/// The ticks that several rows share, without those that the record's ends or gaps cut off.
+std::vector<Tick> whole_ticks(const std::vector<double>& t_s, double tick_s) {
+  constexpr double kNext = 1.5;
+  std::vector<Tick> ticks;
+  bool whole = false;
+  for (std::size_t first = 0; first < t_s.size();) {
+    std::size_t end = first + 1;
+    while (end < t_s.size() && t_s[end] == t_s[first]) ++end;
+    const bool next = end < t_s.size() && t_s[end] - t_s[first] < kNext * tick_s;
+    if (whole && next) ticks.push_back({first, end - first});
+    whole = next;
+    first = end;
+  }
+  return ticks;
+}
+
+std::size_t usual_rows(const std::vector<Tick>& ticks) {
+  std::vector<std::size_t> rows;
+  rows.reserve(ticks.size());
+  for (const Tick& tick : ticks) rows.push_back(tick.rows);
+  const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
+  std::nth_element(rows.begin(), middle, rows.end());
+  return *middle;
+}
+
+/// The first tick whose rows differ from the usual number by more than the beat between rows and
+/// ticks makes them; none: they are lost nowhere, or one at a time.
+std::optional<Tick> uneven_tick(const std::vector<Tick>& ticks) {
+  if (ticks.empty()) return std::nullopt;
+  const std::size_t usual = usual_rows(ticks);
+  const auto odd = std::find_if(ticks.begin(), ticks.end(), [&](const Tick& tick) {
+    return tick.rows + 1 < usual || tick.rows > usual + 1;
+  });
+  return odd == ticks.end() ? std::nullopt : std::optional(*odd);
+}
+
+/// The mean period over whole ticks, as 3.125 rows a tick are 3 or 4. 0: too few rows, or some are
+/// lost.
+double period_in_ticks(const std::vector<Tick>& ticks, double tick_s) {
+  double rows = 0.0;
+  for (const Tick& tick : ticks) rows += static_cast<double>(tick.rows);
+  if (rows < kFewestInTicks || uneven_tick(ticks)) return 0.0;
+  return static_cast<double>(ticks.size()) * tick_s / rows;
 }
 
 /// The tick of a clock that all steps are whole numbers of; 0: none is coarse enough to matter.
@@ -106,34 +146,78 @@ double tick_of(const std::vector<double>& t_s, double mean_step_s) {
   return 0.0;
 }
 
-}  // namespace
+/// The clock that rounded the times.
+struct Clock {
+  double tick_s = 0.0;    ///< 0: none is coarse enough to matter
+  double period_s = 0.0;  ///< of the samples, about
+  bool several_a_tick = false;
+};
 
-std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s) {
+/// None where times go back, stand still throughout or are few. `steps`: those of `t_s`.
+std::optional<Clock> find_clock(const std::vector<double>& t_s, std::vector<double>& steps) {
   const std::size_t n = t_s.size();
   if (n < kFewestForNominal) return std::nullopt;
-  std::vector<double> steps(n - 1);
+  steps.resize(n - 1);
   for (std::size_t i = 1; i < n; ++i) {
     steps[i - 1] = t_s[i] - t_s[i - 1];
     if (!(steps[i - 1] >= 0.0) || !std::isfinite(steps[i - 1])) return std::nullopt;
   }
   const double mean_s = (t_s.back() - t_s.front()) / static_cast<double>(n - 1);
-  const double tick_s = tick_of(t_s, mean_s);
+  Clock clock;
+  clock.tick_s = tick_of(t_s, mean_s);
   const double median_s = median(steps);
   // The mean of the steps that are no gaps; a coarse clock makes some of them 0.
-  const double longest_s = 2.5 * std::max(median_s, std::min(tick_s, mean_s));
+  const double longest_s = 2.5 * std::max(median_s, std::min(clock.tick_s, mean_s));
   double sum_s = 0.0;
   double count = 0.0;
   for (const double step_s : steps) {
-    if (step_s > std::max(longest_s, 1.5 * tick_s)) continue;
+    if (step_s > std::max(longest_s, 1.5 * clock.tick_s)) continue;
     sum_s += step_s;
     count += 1.0;
   }
-  double period_s = sum_s / count;
-  if (!(period_s > 0.0)) return std::nullopt;
-  const bool several_a_tick = tick_s >= 1.05 * period_s;
+  clock.period_s = sum_s / count;
+  if (!(clock.period_s > 0.0)) return std::nullopt;
+  clock.several_a_tick = clock.tick_s >= 1.05 * clock.period_s;
+  return clock;
+}
+
+}  // namespace
+
+bool share_ticks(const std::vector<double>& t_s) {
+  constexpr double kSeveral = 1.5;
+  if (t_s.size() < kFewestForNominal) return false;
+  double ticks = 1.0;
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    if (!(t_s[i] >= t_s[i - 1])) return false;
+    if (t_s[i] > t_s[i - 1]) ticks += 1.0;
+  }
+  return static_cast<double>(t_s.size()) >= kSeveral * ticks;
+}
+
+std::optional<UnevenTick> find_uneven_tick(const std::vector<double>& t_s) {
+  std::vector<double> steps;
+  const std::optional<Clock> clock = find_clock(t_s, steps);
+  if (!clock || !clock->several_a_tick) return std::nullopt;
+  const std::vector<Tick> ticks = whole_ticks(t_s, clock->tick_s);
+  const std::optional<Tick> odd = uneven_tick(ticks);
+  if (!odd) return std::nullopt;
+  return UnevenTick{odd->first, odd->rows, usual_rows(ticks), clock->tick_s};
+}
+
+std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s) {
+  const std::size_t n = t_s.size();
+  std::vector<double> steps;
+  const std::optional<Clock> clock = find_clock(t_s, steps);
+  if (!clock) return std::nullopt;
+  const double tick_s = clock->tick_s;
+  const bool several_a_tick = clock->several_a_tick;
+  double period_s = clock->period_s;
   // Steps of one tick and of two may be times rounded, or samples lost: nothing tells which.
   if (!several_a_tick && tick_s > 0.0 && period_s < 1.95 * tick_s) return std::nullopt;
   if (!several_a_tick && *std::min_element(steps.begin(), steps.end()) <= 0.0) return std::nullopt;
+
+  if (several_a_tick) period_s = period_in_ticks(whole_ticks(t_s, tick_s), tick_s);
+  if (!(period_s > 0.0)) return std::nullopt;
 
   NominalGrid result;
   std::vector<double> index(n, 0.0);
@@ -171,7 +255,7 @@ std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s) {
       covariance += (index[i] - mean_index) * (t_s[i] - t_s.front() - mean_t_s);
       variance += (index[i] - mean_index) * (index[i] - mean_index);
     }
-    period_s = several_a_tick ? period_in_ticks(t_s, index) : covariance / variance;
+    if (!several_a_tick) period_s = covariance / variance;
     if (!(period_s > 0.0)) return std::nullopt;
     begin_s = t_s.front() + mean_t_s - period_s * mean_index;
   }

@@ -29,7 +29,22 @@ struct NominalGrid {
 
 /// None where times go back or miss every even grid by more than half a period (by more than the
 /// clock's resolution where that is coarser), or where more than a tenth of all steps are gaps.
-/// Where several samples fall within one tick of the clock, a lost one cannot be seen.
+/// Where several samples fall within one tick of the clock, one that is lost there cannot be seen;
+/// where several are, there is no grid (find_uneven_tick).
 [[nodiscard]] std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s);
+
+/// True for times that several samples share on average.
+[[nodiscard]] bool share_ticks(const std::vector<double>& t_s);
+
+/// A tick of a coarse clock with fewer or more samples than the others.
+struct UnevenTick {
+  std::size_t first = 0;  ///< index of its first sample
+  std::size_t samples = 0;
+  std::size_t usual = 0;  ///< samples of most ticks
+  double tick_s = 0.0;
+};
+
+/// The first tick in which samples are missing, or are too many; ticks beside gaps do not count.
+[[nodiscard]] std::optional<UnevenTick> find_uneven_tick(const std::vector<double>& t_s);
 
 }  // namespace config::record

@@ -25,6 +25,7 @@ namespace {
 using record_test::TemporaryFile;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(UnitText, DistinguishesPrefixesByCaseAndWordsByNone) {
   EXPECT_EQ(parse_unit("[mm]").factor, 1e-3);
@@ -296,7 +297,63 @@ TEST(TimeGrid, OfRowsThatShareTicksIsCountedOverWholeTicks) {
     ASSERT_TRUE(grid) << begin_s;
     EXPECT_NEAR(grid->grid.sample_time_s, 0.005, 1e-9) << begin_s;
   }
-  EXPECT_FALSE(ticking(500, 1.0, 0.3));  // 200 rows within whole ticks
+  EXPECT_FALSE(ticking(500, 1.0, 0.3));               // 200 rows within whole ticks
+  const auto beating = ticking(2000, 0.015625, 0.0);  // 3.125 rows a tick
+  ASSERT_TRUE(beating);
+  EXPECT_NEAR(beating->grid.sample_time_s, 0.005, 0.005 * 0.0025);
+}
+
+/// 4000 rows at 200 Hz without `lost` of them, with times in whole ticks.
+std::vector<double> ticking_with_loss(double tick_s, int lost) {
+  std::vector<double> t_s;
+  for (int k = 0; k < 4000; ++k) {
+    if (k < 705 || k >= 705 + lost) t_s.push_back(std::floor(k / 200.0 / tick_s + 1e-9) * tick_s);
+  }
+  return t_s;
+}
+
+TEST(TimeGrid, IsNoneWhereRowsAreLostWithinATick) {
+  for (const int lost : {5, 20, 60}) {
+    const std::vector<double> t_s = ticking_with_loss(1.0, lost);
+    EXPECT_FALSE(find_nominal_grid(t_s)) << lost;
+    const auto odd = find_uneven_tick(t_s);
+    ASSERT_TRUE(odd) << lost;
+    EXPECT_EQ(odd->first, 600U);
+    EXPECT_EQ(odd->samples, 200U - static_cast<unsigned>(lost));
+    EXPECT_EQ(odd->usual, 200U);
+  }
+  EXPECT_FALSE(find_uneven_tick(ticking_with_loss(1.0, 1)));  // as the beat of another rate
+  // Whole ticks are lost too: a gap.
+  const auto gap = find_nominal_grid(ticking_with_loss(0.1, 60));
+  ASSERT_TRUE(gap);
+  EXPECT_NEAR(gap->grid.sample_time_s, 0.005, 1e-9);
+  EXPECT_EQ(gap->grid.gaps.size(), 1U);
+}
+
+/// A file of one row for each time.
+std::string file_at(const std::vector<double>& t_s) {
+  std::string text = "t_s,u_V,y_m\n";
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    text += std::to_string(t_s[i]) + "," + std::to_string(i % 7) + ",0.1\n";
+  }
+  return text;
+}
+
+TEST(TimeGrid, OfACoarseClockIsRefusedByTheTickThatLacksRows) {
+  EXPECT_THAT(error_of(file_at(ticking_with_loss(1.0, 60))),
+              HasSubstr(":602: 140 rows between 3 s and 4 s, 200 elsewhere"));
+}
+
+TEST(TimeGrid, IsCalledCoarseWhereTicksAreSharedAlone) {
+  std::vector<double> doubled;
+  for (int k = 0; k < 200; ++k) doubled.push_back(0.005 * (k < 50 ? k : k - 1));
+  const std::vector<double> short_one(doubled.begin() + 40, doubled.begin() + 52);
+  for (const std::vector<double>& t_s : {doubled, short_one, {0.0}, {0.0, 0.0}}) {
+    EXPECT_THAT(error_of(file_at(t_s)), Not(HasSubstr("coarse"))) << t_s.size();
+  }
+  std::vector<double> coarse;
+  for (int k = 0; k < 300; ++k) coarse.push_back(std::floor(k / 200.0));
+  EXPECT_THAT(error_of(file_at(coarse)), HasSubstr("too coarse to tell the rate"));
 }
 
 TEST(TimeGrid, IsNoneForTimesThatDriftOrAreLostInAPattern) {
