@@ -110,9 +110,12 @@ const Words kPressureWords{"pressure*", "press", "druck*"};
 const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
 const Words kValveWords{"valve*", "servovalve", "ventil*", "sv"};
 /// Of a voltage, current or force that drives nothing.
-const Words kNoDriveWords{"battery", "batterie*", "dc",       "bus",     "link",   "zwischenkreis*",
-                          "mains",   "netz*",     "versorg*", "sensor*", "bridge", "excitation",
-                          "brake",   "bremse*",   "load*",    "last*",   "cell"};
+const Words kNoDriveWords{"battery", "batterie*", "zwischenkreis*", "mains", "netz*",   "versorg*",
+                          "sensor*", "bridge",    "excitation",     "brake", "bremse*", "last*",
+                          "cell"};
+/// Likewise, but for those of a motor: "DC motor voltage", "Link motor torque".
+const Words kNoMotorWords{"dc", "bus", "link", "load*"};
+const Words kMotorWords{"motor*", "drive", "antrieb*"};
 /// Of a valve's signal that is none of its sensor's.
 const Words kOrderWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
                         "commande", "ansteuer*", "ctrl",     "controller", "dac",
@@ -131,12 +134,37 @@ bool is_canonical(Role role, const ReadColumn& column) {
   return has_stem_of(role, column) && (fits(role, si) || signal);
 }
 
+/// "10" of "x10 [m]", the tenth state of a model; empty: another name.
+std::string_view state_number(std::string_view header) {
+  if (!header.starts_with('x')) return {};
+  const std::size_t end = std::min(header.find_first_not_of("0123456789", 1), header.size());
+  const bool ends = end == header.size() || is_blank(header[end]) ||
+                    std::string_view("[(_/,").find(header[end]) != std::string_view::npos;
+  return ends ? header.substr(1, end - 1) : std::string_view{};
+}
+
+/// "x10 [m]" is a name where "x1 [m]" stands beside, else a scale.
+HeaderText without_state_number(const std::vector<std::string>& headers, const std::string& header,
+                                const HeaderText& scaled) {
+  const std::string number(state_number(header));
+  const bool counted = std::any_of(headers.begin(), headers.end(), [&](const std::string& each) {
+    const std::string other = clean_text(each);
+    return !state_number(other).empty() && state_number(other) != number;
+  });
+  if (number.empty() || !counted) return scaled;
+  HeaderText text = parse_header("x" + header.substr(1 + number.size()));
+  if (text.scaled || text.name != "x") return scaled;
+  text.name += number;
+  return text;
+}
+
 }  // namespace
 
 HeaderText column_header(const std::vector<std::string>& headers, std::size_t column,
                          const UnitText& beside) {
   const std::string header = clean_text(headers[column]);
   HeaderText text = parse_header(header);
+  if (text.scaled) return without_state_number(headers, header, text);
   const std::string& letter = text.unit.text;
   const bool may = letter == "A" || letter == "V" || letter == "N";
   const bool own = std::find(kRoleKeys.begin(), kRoleKeys.end(), text.name) != kRoleKeys.end();
@@ -238,21 +266,40 @@ bool is_reference(const ReadColumn& column) {
 
 namespace {
 
-/// The command of a valve that a closed loop within it follows: "Valve setpoint [%]".
+/// The command of a valve that a closed loop within it follows: "Valve setpoint [%]", "Valve
+/// position setpoint [%]".
 bool is_valve_set_point(const ReadColumn& column) {
-  const bool other = has_word(column.words, kOtherWords) || has_word(column.words, kPositionWords);
-  return is_reference(column) && has_word(column.words, kValveWords) && !other &&
+  const Words rod{"rod", "piston*", "kolben*", "cylinder*", "zylinder*", "stroke"};
+  return is_reference(column) && has_word(column.words, kValveWords) &&
+         !has_word(column.words, kOtherWords) && !has_word(column.words, rod) &&
          column.text.unit.known();
+}
+
+/// True for all that drives: a motor's voltage, no battery's.
+bool may_drive(const ReadColumn& column) {
+  if (has_word(column.words, kNoDriveWords)) return false;
+  const auto not_of_motor =
+      std::count_if(column.words.begin(), column.words.end(),
+                    [](const std::string& word) { return has_word({word}, kNoMotorWords); });
+  // "Motor DC link voltage" is the link's
+  return not_of_motor == 0 || (not_of_motor == 1 && has_word(column.words, kMotorWords));
 }
 
 }  // namespace
 
 bool is_spool(const ReadColumn& column) {
+  if (is_valve_set_point(column)) return false;
   const bool stage = has_word(column.words, {"main"}) && has_word(column.words, {"stage"});
   if (stage || has_word(column.words, kSpoolWords)) return true;
   if (!has_word(column.words, kValveWords) || has_word(column.words, kOrderWords)) return false;
   if (has_word(column.words, kPositionWords)) return true;
   return has_word(column.words, kMeasuredWords) && !has_word(column.words, kWeakCommandWords);
+}
+
+bool is_drive_set_point(const ReadColumn& column) {
+  const std::string& si = column.text.unit.si;
+  return is_reference(column) && (si == "V" || si == "A" || si == "pct") &&
+         !has_word(column.words, kOtherWords) && !has_word(column.words, kPositionWords);
 }
 
 bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }
@@ -291,7 +338,7 @@ int fit_of(Role role, const ReadColumn& column) {
     if (spool && (positional || measured > 0)) return 0;
     if (positional && !unit.known()) return 0;
     if (has_word(column.words, kCommandWords)) return kStrong;
-    const bool drives = !positional && !has_word(column.words, kNoDriveWords);
+    const bool drives = !positional && may_drive(column);
     return drives && has_word(column.words, kWeakCommandWords) ? kWeak : 0;
   }
   if (!unit.known() && has_word(column.words, kCommandWords)) return 0;

@@ -57,6 +57,8 @@ struct ReadColumn {
 
 /// True for the measured position of a valve's spool, which is neither the rod's nor a command.
 [[nodiscard]] bool is_spool(const ReadColumn& column);
+/// True for a set point in a drive's unit, which may be the command: "Set voltage [V]".
+[[nodiscard]] bool is_drive_set_point(const ReadColumn& column);
 /// True where a word speaks of a command: a commanded position is no measured one.
 [[nodiscard]] bool is_commanded(const ReadColumn& column);
 /// True where a word speaks of a measurement.

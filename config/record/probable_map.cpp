@@ -92,6 +92,7 @@ bool is_counter(const ReadColumn& column, double step_s) {
 /// How likely a column is the one, without its name being certain; 0: not at all.
 int likelihood(Role role, const ReadColumn& column) {
   const std::string& si = column.text.unit.si;
+  if (role == Role::command && !column.clock && is_drive_set_point(column)) return 4;
   if (si == "s" || column.clock || !is_plain(column)) return 0;
   if (is_spool(column)) return role == Role::command ? 2 : 0;
   if (!column.text.unit.known() && increases(*column.sample)) return 1;  // a time, a counter

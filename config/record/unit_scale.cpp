@@ -168,6 +168,18 @@ bool has_scale_in_words(std::string_view name) {
   return false;
 }
 
+/// "Position (1:10)"
+bool has_ratio(std::string_view name) {
+  const std::size_t open = name.find_last_of("([");
+  if (open == std::string_view::npos || !(name.ends_with(')') || name.ends_with(']'))) return false;
+  std::string_view ratio = trimmed(name.substr(open + 1, name.size() - open - 2));
+  double value = 0.0;
+  bool whole = false;
+  if (!take_number(ratio, value, whole) || !trimmed(ratio).starts_with(':')) return false;
+  ratio = trimmed(trimmed(ratio).substr(1));
+  return take_number(ratio, value, whole) && ratio.empty();
+}
+
 }  // namespace
 
 bool name_has_scale(std::string_view name) {
@@ -177,9 +189,15 @@ bool name_has_scale(std::string_view name) {
   bool whole = false;
   std::string_view rest = name;
   if (take_number(rest, value, whole)) {
+    const bool blank = rest.starts_with(' ');
     rest = trimmed(rest);
     if (take_times(rest, true) || rest.starts_with("x ")) return true;
+    const bool scale = !whole || (value > 1.0 && is_power_of_ten(value));  // "10xPosition"
+    if (scale && !blank && rest.size() > 1 && rest.starts_with('x') && !is_digit(rest[1])) {
+      return true;
+    }
   }
+  if (has_ratio(name)) return true;
   while (name.ends_with(')') || name.ends_with(']')) name.remove_suffix(1);
   const std::size_t digits = name.find_last_not_of("0123456789.,eE^- ");
   if (digits == std::string_view::npos || digits + 1 >= name.size()) return false;

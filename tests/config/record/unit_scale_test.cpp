@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/record/column_words.h"
 #include "config/record/layout.h"
 #include "config/record/limit_line.h"
 #include "config/record/record.h"
@@ -48,16 +49,31 @@ TEST(UnitScale, AHeaderKeepsItsNameBeforeTheScale) {
 }
 
 TEST(UnitScale, SeveralReadingsLeaveNoUnit) {
-  for (const char* header :
-       {"Position [mm*10]", "Position [mm/10]", "Position [mm x10]", "Position [x 0.1 mm]",
-        "Position x10 [mm]", "Position x 0.1 [mm]", "Position*10 [mm]", "Position/10 [mm]",
-        "Position \xC3\x97"
-        "10 [mm]",
-        "Position (x10) [mm]", "10 x Position [mm]", "Position [mm]*0.1", "Position [10 mm]",
-        "Position 0.25 mm", "Position x 0.1 mm", "Position 10^-1 [mm]",
-        "Position\xC2\xB7"
-        "10\xC2\xB3 [m]",
-        "Weg in Zehntel mm", "Position (factor 10) [mm]"}) {
+  for (const char* header : {"Position [mm*10]",
+                             "Position [mm/10]",
+                             "Position [mm x10]",
+                             "Position [x 0.1 mm]",
+                             "Position x10 [mm]",
+                             "Position x 0.1 [mm]",
+                             "Position*10 [mm]",
+                             "Position/10 [mm]",
+                             "Position \xC3\x97"
+                             "10 [mm]",
+                             "Position (x10) [mm]",
+                             "10 x Position [mm]",
+                             "10xPosition [mm]",
+                             "0.1xPosition [mm]",
+                             "Position (1:10) [mm]",
+                             "Position (10 : 1) [mm]",
+                             "Position [mm]*0.1",
+                             "Position [10 mm]",
+                             "Position 0.25 mm",
+                             "Position x 0.1 mm",
+                             "Position 10^-1 [mm]",
+                             "Position\xC2\xB7"
+                             "10\xC2\xB3 [m]",
+                             "Weg in Zehntel mm",
+                             "Position (factor 10) [mm]"}) {
     const HeaderText text = parse_header(header);
     EXPECT_TRUE(text.scaled) << header;
     EXPECT_FALSE(text.unit.known()) << header;
@@ -65,9 +81,9 @@ TEST(UnitScale, SeveralReadingsLeaveNoUnit) {
 }
 
 TEST(UnitScale, NumbersOfChannelsAreNoScales) {
-  for (const char* header :
-       {"Position 10 [mm]", "Position X10 [mm]", "x1 [mm]", "Max 10 [mm]", "AI 1.2 [mm]",
-        "Dev1/ai0 [mm]", "Position 2 mm", "pos_x10_mm", "Rod (left) [mm]"}) {
+  for (const char* header : {"Position 10 [mm]", "Position X10 [mm]", "x1 [mm]", "Max 10 [mm]",
+                             "AI 1.2 [mm]", "Dev1/ai0 [mm]", "Position 2 mm", "pos_x10_mm",
+                             "Rod (left) [mm]", "2xy [mm]", "Rod 1:10 [mm]"}) {
     const HeaderText text = parse_header(header);
     EXPECT_FALSE(text.scaled) << header;
     EXPECT_EQ(text.unit.si, "m") << header;
@@ -86,6 +102,13 @@ TEST(UnitScale, LongHeadersAreSoughtNoFurtherThanAUnitIsLong) {
     EXPECT_LE(asked, kMostUnitBytes + 1) << part;
     EXPECT_FALSE(parse_header(text + "]").unit.known()) << part;
   }
+}
+
+TEST(UnitScale, NumbersOfStatesAreNoneBesideOthers) {
+  EXPECT_EQ(column_header({"t [s]", "x1 [mm]", "x10 [mm]"}, 2, {}).name, "x10");
+  EXPECT_EQ(column_header({"t [s]", "x1 [mm]", "x10 [mm]"}, 2, {}).unit.si, "m");
+  EXPECT_TRUE(column_header({"t [s]", "u [V]", "x10 [mm]"}, 2, {}).scaled);
+  EXPECT_TRUE(column_header({"x1 [s]", "u [V]", "y x10 [mm]"}, 2, {}).scaled);
 }
 
 TEST(UnitScale, CellsHaveNone) {
