@@ -106,21 +106,21 @@ const Words kOtherWords{
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
 const Words kPressureWords{"pressure*", "press", "druck*"};
-/// Of the valve, whose position is not the rod's and whose reading is no command.
+/// Words of the valve, whose position is not the rod's and whose reading is no command.
 const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
 const Words kValveWords{"valve*", "servovalve", "ventil*", "sv"};
-/// Of a voltage, current or force that drives nothing.
+/// Words of a voltage, current or force that drives nothing.
 const Words kNoDriveWords{"battery", "batterie*", "zwischenkreis*", "mains", "netz*",   "versorg*",
                           "sensor*", "bridge",    "excitation",     "brake", "bremse*", "last*",
                           "cell"};
 /// Likewise, but for those of a motor: "DC motor voltage", "Link motor torque".
 const Words kNoMotorWords{"dc", "bus", "link", "load*"};
 const Words kMotorWords{"motor*", "drive", "antrieb*"};
-/// Of a valve's signal that is none of its sensor's.
-const Words kOrderWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
-                        "commande", "ansteuer*", "ctrl",     "controller", "dac",
-                        "ao",       "input",     "eingang*", "stellgr*",   "mando",
-                        "comando",  "control",   "output",   "out"};
+/// Words of a valve's signal that is none of its sensor's.
+const Words kValveCommandWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
+                               "commande", "ansteuer*", "ctrl",     "controller", "dac",
+                               "ao",       "input",     "eingang*", "stellgr*",   "mando",
+                               "comando",  "control",   "output",   "out"};
 
 constexpr int kCanonical = 100;
 constexpr int kStrong = 50;
@@ -291,7 +291,8 @@ bool is_spool(const ReadColumn& column) {
   if (is_valve_set_point(column)) return false;
   const bool stage = has_word(column.words, {"main"}) && has_word(column.words, {"stage"});
   if (stage || has_word(column.words, kSpoolWords)) return true;
-  if (!has_word(column.words, kValveWords) || has_word(column.words, kOrderWords)) return false;
+  if (!has_word(column.words, kValveWords) || has_word(column.words, kValveCommandWords))
+    return false;
   if (has_word(column.words, kPositionWords)) return true;
   return has_word(column.words, kMeasuredWords) && !has_word(column.words, kWeakCommandWords);
 }

@@ -24,7 +24,7 @@ struct TextForm {
   std::vector<std::string> names;  ///< as many as there are columns; empty without a header
   std::vector<std::string> units;  ///< likewise; empty without a line of units
   std::vector<PassedLine> passed;  ///< in the order of the file
-  std::vector<std::vector<PassedLine>> factors;  ///< of each column: "'Faktor' '0.001'", its line
+  std::vector<std::vector<PassedLine>> factors;  ///< "'Faktor' '0.001'", by column
   std::vector<FieldKind> kinds;                  ///< one per column
   std::vector<ColumnDecimals> decimals;          ///< likewise
   std::vector<CellUnits> cell_units;             ///< likewise
