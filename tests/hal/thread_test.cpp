@@ -15,7 +15,7 @@ std::atomic<clockid_t> joined_by{-1};
 
 }  // namespace
 
-/// In place of the C library's, which it calls: tells by which clock a join was bounded.
+/// Replaces the C library's function, which it calls: tells by which clock a join was bounded.
 extern "C" int pthread_clockjoin_np(pthread_t thread, void** value, clockid_t clock,
                                     const timespec* until) {
   joined_by = clock;

@@ -30,7 +30,7 @@ class OccurrenceList {
   std::vector<Occurrence> all_;
 };
 
-/// Those in which a limit was passed, each from then on.
+/// The occurrences in which a limit was passed, each from then on.
 [[nodiscard]] std::vector<Occurrence> passed_limits(const std::vector<Occurrence>& all);
 
 struct Shift {

@@ -143,7 +143,7 @@ kind = "chambers"
 tolerance_Pa = 5e5
 action = "latch"
 )";
-// And in that of a second position sensor.
+// The same register, in the part of a second position sensor.
 inline constexpr const char* kDisagree = R"(
 [modbus.registers.spare]
 role = "rod"
