@@ -20,7 +20,7 @@ class StartingSpeed {
   using Ensemble = plant_sim::Ensemble;
 
   explicit StartingSpeed(const Ensemble& ensemble) {
-    if (!ensemble.find_state("in_Pa")) speed_ = ensemble.find_state("v_mps");
+    if (!ensemble.find_state("pressure_in_Pa")) speed_ = ensemble.find_state("v_mps");
   }
 
   /// True where the plant has such a speed.
