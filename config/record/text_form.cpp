@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "config/record/column_unit.h"
 #include "config/record/column_words.h"
 #include "config/record/damaged_row.h"
 #include "config/record/layout.h"
@@ -54,10 +55,7 @@ class FormFinder {
     first_ = table.first;
     name_columns();
     read_preamble();
-    for (std::size_t c = 0; c < form_.kinds.size(); ++c) {
-      if (!names_unit(c)) form_.cell_units[c].take_unit_of_gaps();
-      require_one_unit(c);
-    }
+    for (std::size_t c = 0; c < form_.kinds.size(); ++c) settle_unit(form_, c, name_);
     return form_;
   }
 
@@ -317,47 +315,6 @@ class FormFinder {
       while (c + 1 < header.names.size() && fits(c)) ++c;
       refuse_field(header.line, header.names[c], c, std::to_string(c + 1));
     }
-  }
-
-  [[nodiscard]] std::string column_words(std::size_t c) const {
-    const bool named = !form_.names.empty() && !form_.names[c].empty();
-    return "column " + (named ? form_.names[c] : std::to_string(c + 1));
-  }
-
-  [[nodiscard]] bool names_unit(std::size_t c) const {
-    if (!form_.units.empty() && parse_unit(form_.units[c]).known()) return true;
-    return !form_.names.empty() && column_header(form_.names, c, {}).unit.known();
-  }
-
-  /// Refuses cells of one column with two units, or with another than the header's.
-  void require_unit_of_gaps(std::size_t c) const {
-    const CellUnits& cells = form_.cell_units[c];
-    UnitText own = cells.unit();
-    if (!cells.any() && !form_.names.empty())
-      own = column_header(form_.names, c, cells.gaps()).unit;
-    if (!cells.any() && !own.known() && !form_.units.empty()) own = parse_unit(form_.units[c]);
-    if (own.text.empty() || own.si == "1" || same_unit(own, cells.gaps())) return;
-    throw bad_data(
-        name_,
-        column_words(c) + ": a gap is in " + cells.gaps().text + ", the column in " + own.text,
-        kOneUnit);
-  }
-
-  void require_one_unit(std::size_t c) const {
-    const CellUnits& cells = form_.cell_units[c];
-    if (form_.kinds[c] != FieldKind::number) return;
-    if (cells.gaps().known()) require_unit_of_gaps(c);
-    if (!cells.any()) return;
-    const auto refuse = [&](std::size_t line, const std::string& what) {
-      throw bad_data(name_ + ":" + std::to_string(line), column_words(c) + ": " + what, kOneUnit);
-    };
-    if (cells.odd_line() > 0) refuse(cells.odd_line(), cells.conflict(cells.odd()));
-    UnitText above;
-    if (!form_.names.empty()) above = column_header(form_.names, c, cells.unit()).unit;
-    if (!above.known() && !form_.units.empty()) above = parse_unit(form_.units[c]);
-    if (above.text.empty() || above.si == "1" || same_unit(above, cells.unit())) return;
-    refuse(cells.line(), record::quoted(cells.first()) + " is in " + cells.unit().text +
-                             ", the column's name says " + above.text);
   }
 
   /// Reads LabVIEW's tags in the lines above the table: the period, the channels' units.

@@ -149,7 +149,7 @@ double tick_of(const std::vector<double>& t_s, double mean_step_s) {
 /// The clock that rounded the times.
 struct Clock {
   double tick_s = 0.0;    ///< 0: none is coarse enough to matter
-  double period_s = 0.0;  ///< of the samples, about
+  double period_s = 0.0;  ///< period of the samples, about
   bool several_a_tick = false;
 };
 

@@ -47,7 +47,7 @@ class StartingSpeed {
 
  private:
   std::optional<std::size_t> speed_;
-  double samples_ = 0.0;  ///< of the segment so far
+  double samples_ = 0.0;  ///< number of samples since the segment began
 };
 
 }  // namespace estimator::greybox

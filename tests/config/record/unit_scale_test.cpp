@@ -126,8 +126,9 @@ TEST(StatedFactors, AreThoseThatChangeANumber) {
   EXPECT_THAT(stated_factors({"Gain", "1.0", ""}, '.'), ElementsAre("", "", ""));
   EXPECT_THAT(stated_factors({"max", "10", "600"}, '.'), IsEmpty());
   EXPECT_THAT(stated_factors({"Full scale", "10", "600"}, '.'), IsEmpty());
-  EXPECT_THAT(stated_factors({"Vertical Scale", "2", "0.5"}, '.'), IsEmpty());  // of the screen
-  EXPECT_THAT(stated_factors({"Controller gain", "2", ""}, '.'), IsEmpty());    // a setting
+  // the screen's scale, not the values'
+  EXPECT_THAT(stated_factors({"Vertical Scale", "2", "0.5"}, '.'), IsEmpty());
+  EXPECT_THAT(stated_factors({"Controller gain", "2", ""}, '.'), IsEmpty());  // a setting
 }
 
 TEST(StatedFactors, AreAllButOne) {

@@ -70,17 +70,21 @@ backend = "modbus"
 channel = "enable"
 )";
 
-inline constexpr const char* kPressure = R"(
+// The supply pressure as an input; keys of its register may follow.
+inline const std::string kSupply =
+    "\n"
+    R"([[input]]
+id = "supply"
+role = "supply_pressure"
+backend = "modbus"
+channel = "supply"
 [modbus.registers.supply]
 role = "input"
 address = 15
 type = "int16"
 scale = 1000.0
-[[input]]
-id = "supply"
-role = "supply_pressure"
-backend = "modbus"
-channel = "supply"
+)";
+inline const std::string kPressure = kSupply + R"(
 [[guard]]
 kind = "pressure"
 channel = "supply_pressure"
@@ -88,41 +92,21 @@ low_Pa = 5e6
 action = "latch"
 )";
 // The same pressure with a range, below which there is none.
-inline constexpr const char* kTransducer = R"(
-[modbus.registers.supply]
-role = "input"
-address = 15
-type = "int16"
-scale = 1000.0
+inline const std::string kTransducer = kSupply + R"(
 low = 5e6
 high = 1e7
-[[input]]
-id = "supply"
-role = "supply_pressure"
-backend = "modbus"
-channel = "supply"
 [[guard]]
 kind = "transducer"
 channel = "supply_pressure"
 action = "latch"
 )";
 // The register of the enable input, which a test can set, in the part of a chamber's transducer.
-inline constexpr const char* kChambers = R"(
-[modbus.registers.supply]
-role = "input"
-address = 15
-type = "int16"
-scale = 1000.0
+inline const std::string kChambers = kSupply + R"(
 [modbus.registers.chamber]
 role = "input"
 address = 12
 scale = -2e7
 offset = 2e7
-[[input]]
-id = "supply"
-role = "supply_pressure"
-backend = "modbus"
-channel = "supply"
 [modbus.registers.other_chamber]
 role = "input"
 address = 17
