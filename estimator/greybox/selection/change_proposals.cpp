@@ -239,6 +239,19 @@ ChangeScore settling_from(const ChangeScore& ramp, const FitSummary& fitted) {
   return settling;
 }
 
+ChangeScore with_course_of(const ChangeScore& change, const FitSummary& fitted,
+                           const ChangeScore& other) {
+  ChangeScore result = other;
+  result.kind = change.kind;
+  const auto fitted_or = [&](const char* name, double otherwise) {
+    const double value = fitted.value(name_of(change) + name);
+    return std::isfinite(value) ? value : otherwise;
+  };
+  result.at_s = fitted_or(".at_s", change.at_s);
+  result.duration_s = fitted_or(".ramp_s", fitted_or(".time_constant_s", change.duration_s));
+  return result;
+}
+
 ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted) {
   ChangeScore step = ramp;
   step.kind = ChangeKind::step;

@@ -34,6 +34,9 @@ struct ChangeProposal {
                                      const Dataset& record);
 /// An exponential in the place of a fitted ramp: the likelihood decides how it settles.
 [[nodiscard]] ChangeScore settling_from(const ChangeScore& ramp, const FitSummary& fitted);
+/// A change of another parameter with the course of a fitted one.
+[[nodiscard]] ChangeScore with_course_of(const ChangeScore& change, const FitSummary& fitted,
+                                         const ChangeScore& other);
 /// A step in the middle of a fitted ramp.
 [[nodiscard]] ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted);
 

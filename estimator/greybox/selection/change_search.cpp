@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/change_proposals.h"
+#include "estimator/greybox/selection/change_rivals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/parallel.h"
 
@@ -95,22 +96,6 @@ std::size_t best_of(const std::vector<ChangeProposal>& proposals,
   return best;
 }
 
-/// Other parameters whose change explains the record about as well as the chosen one's.
-std::vector<std::string> rivals_of(const std::vector<ChangeProposal>& proposals,
-                                   const std::vector<InnovationStage>& stages, std::size_t chosen) {
-  const std::string& own = proposals[chosen].score.parameter.name;
-  double most = penalised(stages[chosen]);
-  for (const InnovationStage& stage : stages) most = std::min(most, penalised(stage));
-  most += 2.0 * kEvidence_nats;
-  std::vector<std::string> rivals;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    const std::string& other = proposals[i].score.parameter.name;
-    const bool known = std::find(rivals.begin(), rivals.end(), other) != rivals.end();
-    if (other != own && !known && penalised(stages[i]) <= most) rivals.push_back(other);
-  }
-  return rivals;
-}
-
 /// The stage settled with a change, its time scanned: with a noise model of its own the likelihood
 /// shows it more clearly.
 InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,
@@ -188,14 +173,14 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     stages.push_back(fitted(proposals.back(), stage, wide(plain.options.threads)));
     return proposals.size() - 1;
   };
-  const std::size_t first = best_of(proposals, stages);
-  if (proposals[first].score.kind == ChangeKind::step) {
+  std::size_t chosen = best_of(proposals, stages);
+  if (proposals[chosen].score.kind == ChangeKind::step) {
     const std::size_t ramp =
-        also(ramp_about(proposals[first].score, stages[first].model.fitted, record));
+        also(ramp_about(proposals[chosen].score, stages[chosen].model.fitted, record));
     // a ramp finds the time of a step from farther away
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
+    chosen = best_of(proposals, stages);
   }
-  std::size_t chosen = best_of(proposals, stages);
   if (std::isfinite(
           stages[chosen].model.fitted.value(name_of(proposals[chosen].score) + ".ramp_s"))) {
     const std::size_t settling =
@@ -218,6 +203,10 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     if (penalised(stages[ramp]) < most) chosen = ramp;
   }
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
+  // what explained much by a course of its own may be a rival by the chosen one
+  for (const std::size_t i : contenders(proposals, stages, chosen, penalised(stage))) {
+    also(with_course_of(proposals[chosen].score, stages[chosen].model.fitted, proposals[i].score));
+  }
   take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
   scores_taken.push_back(proposals[chosen].score);
   return true;

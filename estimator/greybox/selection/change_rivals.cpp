@@ -1,0 +1,55 @@
+#include "estimator/greybox/selection/change_rivals.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "estimator/greybox/selection/innovation_trials.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Share of the chosen change's gain from which on another parameter is tried with the same course,
+/// and the most of these.
+constexpr double kContends = 0.5;
+constexpr std::size_t kMostContenders = 2;
+
+}  // namespace
+
+std::vector<std::string> rivals_of(const std::vector<ChangeProposal>& proposals,
+                                   const std::vector<InnovationStage>& stages, std::size_t chosen) {
+  const std::string& own = proposals[chosen].score.parameter.name;
+  double most = penalised(stages[chosen]);
+  for (const InnovationStage& stage : stages) most = std::min(most, penalised(stage));
+  most += 2.0 * kEvidence_nats;
+  std::vector<std::string> rivals;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const std::string& other = proposals[i].score.parameter.name;
+    const bool known = std::find(rivals.begin(), rivals.end(), other) != rivals.end();
+    if (other != own && !known && penalised(stages[i]) <= most) rivals.push_back(other);
+  }
+  return rivals;
+}
+
+std::vector<std::size_t> contenders(const std::vector<ChangeProposal>& proposals,
+                                    const std::vector<InnovationStage>& stages, std::size_t chosen,
+                                    double before) {
+  std::vector<std::string> known = rivals_of(proposals, stages, chosen);
+  known.push_back(proposals[chosen].score.parameter.name);
+  const double gain = before - penalised(stages[chosen]);
+  std::vector<std::size_t> order(stages.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return penalised(stages[a]) < penalised(stages[b]);
+  });
+  std::vector<std::size_t> result;
+  for (const std::size_t i : order) {
+    const std::string& name = proposals[i].score.parameter.name;
+    if (result.size() == kMostContenders || before - penalised(stages[i]) < kContends * gain) break;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    known.push_back(name);
+    result.push_back(i);
+  }
+  return result;
+}
+
+}  // namespace estimator::greybox::selection
