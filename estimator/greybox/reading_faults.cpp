@@ -10,9 +10,12 @@
 namespace estimator::greybox {
 namespace {
 
-constexpr double kLeap = 0.1;        ///< least leap over the usual range
-constexpr double kLeapInSteps = 20;  ///< usual largest steps from sample to sample
+constexpr double kLeap = 0.01;       ///< least leap over the usual range
+constexpr double kLeapInSteps = 3;   ///< usual largest steps from sample to sample
+constexpr double kLeapInTurns = 20;  ///< usual largest distances from the median of five
 constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
+/// Share of the samples that are usual: a leap makes two steps.
+constexpr double kUsual = 0.97;
 constexpr double kTravel = 0.02;     ///< least travel over the usual range
 constexpr double kResolutions = 3.0;
 constexpr double kCorrelation = 0.4;
@@ -30,6 +33,30 @@ std::vector<double> steps_of(const Dataset& record) {
     }
   }
   return steps_m;
+}
+
+/// Distance of each sample from the median of the five about it; 0 at the ends of a segment.
+std::vector<double> turns_of(const Dataset& record) {
+  std::vector<double> turns_m(record.size(), 0.0);
+  for (const SampleRange& span : segments(record)) {
+    for (std::size_t k = span.begin + 2; k + 2 < span.end; ++k) {
+      std::array<double, 5> near{};
+      std::copy_n(record.y_m.begin() + static_cast<std::ptrdiff_t>(k) - 2, near.size(),
+                  near.begin());
+      std::nth_element(near.begin(), near.begin() + 2, near.end());
+      turns_m[k] = std::abs(record.y_m[k] - near[2]);
+    }
+  }
+  return turns_m;
+}
+
+/// The greatest of those that are usual.
+double usual_m(std::vector<double> values_m) {
+  if (values_m.empty()) return 0.0;
+  const auto at = values_m.begin() + static_cast<std::ptrdiff_t>(
+                                         kUsual * static_cast<double>(values_m.size() - 1));
+  std::nth_element(values_m.begin(), at, values_m.end());
+  return *at;
 }
 
 /// Speed = offset + gain * command, and their correlation, between the ends of the range.
@@ -82,17 +109,14 @@ ValueRange ends_of(const Dataset& record, const std::vector<SampleRange>& leaps)
 }
 
 std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
-  const ValueRange usual_step = usual_range(steps_of(record));
-  const double far_m = std::max(kLeap * range_m, kLeapInSteps * usual_step.high);
+  const std::vector<double> turns_m = turns_of(record);
+  const double far_m = std::max({kLeap * range_m, kLeapInSteps * usual_m(steps_of(record)),
+                                 kLeapInTurns * usual_m(turns_m)});
   std::vector<SampleRange> leaps;
   std::size_t samples = 0;
   for (const SampleRange& span : segments(record)) {
-    for (std::size_t k = span.begin + 2; k + 2 < span.end; ++k) {
-      std::array<double, 5> near{};
-      std::copy_n(record.y_m.begin() + static_cast<std::ptrdiff_t>(k) - 2, near.size(),
-                  near.begin());
-      std::nth_element(near.begin(), near.begin() + 2, near.end());
-      if (!counts(record, k) || !(std::abs(record.y_m[k] - near[2]) > far_m)) continue;
+    for (std::size_t k = span.begin; k < span.end; ++k) {
+      if (!counts(record, k) || !(turns_m[k] > far_m)) continue;
       ++samples;
       if (!leaps.empty() && leaps.back().end == k) {
         leaps.back().end = k + 1;

@@ -13,6 +13,7 @@
 #include "config/schema/joined.h"
 #include "config/schema/spelling.h"
 #include "workbench/files/file_check.h"
+#include "workbench/diagnose/leaps.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
 #include "workbench/present/printed_axis.h"
@@ -44,7 +45,7 @@ std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
   std::vector<greybox::Dataset> sets;
   sets.reserve(records.size());
   for (const config::record::Record& record : records) {
-    sets.push_back(greybox::dataset_of(record));
+    sets.push_back(dataset_without_leaps(record));
   }
   return sets;
 }

@@ -45,10 +45,7 @@ void for_ignored(const std::vector<std::string>& spans, const std::vector<Record
   }
 }
 
-namespace {
-
-/// Leaves gaps where `ignored` is true.
-void cut(config::record::Record& record, const std::vector<char>& ignored) {
+void cut_samples(const std::vector<char>& ignored, config::record::Record& record) {
   config::record::Record rest = record;
   rest.t_s.clear();
   rest.u_V.clear();
@@ -71,8 +68,6 @@ void cut(config::record::Record& record, const std::vector<char>& ignored) {
   record = std::move(rest);
 }
 
-}  // namespace
-
 void cut_ignored(const std::vector<std::string>& spans, const std::vector<std::string>& names,
                  std::vector<config::record::Record>& records) {
   std::vector<RecordTimes> times;
@@ -83,7 +78,7 @@ void cut_ignored(const std::vector<std::string>& spans, const std::vector<std::s
   }
   for_ignored(spans, times,
               [&](std::size_t record, std::size_t sample) { ignored[record][sample] = 1; });
-  for (std::size_t r = 0; r < records.size(); ++r) cut(records[r], ignored[r]);
+  for (std::size_t r = 0; r < records.size(); ++r) cut_samples(ignored[r], records[r]);
 }
 
 }  // namespace workbench::fit

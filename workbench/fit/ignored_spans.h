@@ -26,4 +26,7 @@ void for_ignored(const std::vector<std::string>& spans, const std::vector<Record
 void cut_ignored(const std::vector<std::string>& spans, const std::vector<std::string>& names,
                  std::vector<config::record::Record>& records);
 
+/// Takes the samples where `ignored` is not 0 out of a record, which then has gaps there.
+void cut_samples(const std::vector<char>& ignored, config::record::Record& record);
+
 }  // namespace workbench::fit
