@@ -42,7 +42,7 @@ void append(Dataset& to, const config::record::Record& from, std::size_t begin, 
   const std::size_t settling = settling_samples(from.sample_time_s);
   const Initialisation initialising = begin > 0                         ? kInitialising
                                       : begins_moving(from, begin, end) ? kInitialisingIfObserved
-                                                                        : kNotInitialising;
+                                                                        : kFromRest;
   to.starts.push_back(to.size());
   for (std::size_t i = begin; i < end; ++i) {
     to.t_s.push_back(from.t_s[i]);
@@ -138,10 +138,25 @@ std::vector<Segment> without(const std::vector<bool>& missing,
 
 double Dataset::observer_gain(std::size_t k, double observer_per_s) const noexcept {
   const double observed = observer_per_s * sample_time_s;
-  if (k >= initialising.size() || initialising[k] == kNotInitialising) return observed;
+  if (k >= initialising.size() || initialising[k] <= kFromRest) return observed;
   if (initialising[k] == kInitialisingIfObserved && !(observer_per_s > 0.0)) return observed;
   return std::max(observed,
                   std::min(kLargestInitialisationGain, kInitialisation_per_s * sample_time_s));
+}
+
+ObserverGain Dataset::observer_gain(std::size_t k, double observer_per_s,
+                                    PlantStart start) const noexcept {
+  const bool settles = k < initialising.size() && initialising[k] != kNotInitialising;
+  const bool follows = observer_per_s > 0.0 || (settles && initialising[k] > kFromRest);
+  if (start == PlantStart::held_by_oil || !settles || !follows) {
+    return {observer_gain(k, observer_per_s), 0.0};
+  }
+  const auto next = std::upper_bound(starts.begin(), starts.end(), k);
+  const std::size_t begin = next == starts.begin() ? 0 : *(next - 1);
+  const auto n = static_cast<double>(k - begin + 1);
+  const double all = n * (n + 1.0);
+  // one sample shows no speed
+  return {2.0 * (2.0 * n - 1.0) / all, n > 1.0 ? 6.0 / all / sample_time_s : 0.0};
 }
 
 Dataset dataset_of(const config::record::Record& record) {

@@ -16,8 +16,19 @@ namespace estimator::greybox {
 struct InnovationGains;
 
 /// State of a sample while its segment settles. A record's first state is the model file's, from
-/// which a free run starts; the state after a gap is unknown.
-enum Initialisation : char { kNotInitialising, kInitialisingIfObserved, kInitialising };
+/// which a free run starts: at rest, as far as three samples show, or during a motion. The state
+/// after a gap is unknown.
+enum Initialisation : char { kNotInitialising, kFromRest, kInitialisingIfObserved, kInitialising };
+
+/// Speeds at which a plant can begin: on an axis driven by force any, beside the pressures of oil
+/// or behind a velocity servo only that of the command.
+enum class PlantStart { held_by_oil, any_speed };
+
+/// Correction of a model per m of error, measured less modelled position.
+struct ObserverGain {
+  double position = 0.0;
+  double speed_per_s = 0.0;
+};
 
 /// Gaps of the record that a data set was made from.
 struct GapSummary {
@@ -53,6 +64,9 @@ struct Dataset {
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
   /// Share of the position error that the observer corrects at sample k.
   [[nodiscard]] double observer_gain(std::size_t k, double observer_per_s) const noexcept;
+  /// See observer_correction.h.
+  [[nodiscard]] ObserverGain observer_gain(std::size_t k, double observer_per_s,
+                                           PlantStart start) const noexcept;
 };
 
 /// Time after a segment's start in which the error does not count.

@@ -1,7 +1,7 @@
-// Speed at the start of a segment that begins in motion, on an axis driven by force: an error of it
-// lasts for mass over damping, where oil would hold a rod at once. While the segment settles,
-// position and speed follow the growing-memory filter of degree 1, the line through all samples so
-// far in place of the position alone:
+// Correction of a simulation towards the readings: of the position, by the weak observer, and while
+// a segment settles, of the speed too on an axis driven by force, where an error of it lasts for
+// mass over damping; oil would hold a rod at once. Position and speed then follow the
+// growing-memory filter of degree 1, the line through all samples so far:
 //
 //   y += 2 (2 n - 1) / (n (n + 1)) e,   v += 6 / (n (n + 1)) e / Ts,   e of the n-th sample
 //
@@ -11,43 +11,52 @@
 #include <cstddef>
 #include <optional>
 
+#include "estimator/greybox/dataset.h"
 #include "plant_sim/ensemble.h"
 
 namespace estimator::greybox {
 
-class StartingSpeed {
+class ObserverCorrection {
  public:
   using Ensemble = plant_sim::Ensemble;
 
-  explicit StartingSpeed(const Ensemble& ensemble) {
+  /// `record` must outlive it.
+  ObserverCorrection(const Ensemble& ensemble, const Dataset& record, double observer_per_s)
+      : record_(record), observer_per_s_(observer_per_s) {
     if (!ensemble.find_state("pressure_in_Pa")) speed_ = ensemble.find_state("v_mps");
   }
 
-  /// True where the plant has such a speed.
-  [[nodiscard]] bool is_free() const noexcept { return speed_.has_value(); }
+  [[nodiscard]] ObserverGain gain(std::size_t k) const noexcept {
+    return record_.observer_gain(k, observer_per_s_,
+                                 speed_ ? PlantStart::any_speed : PlantStart::held_by_oil);
+  }
 
-  void begin() noexcept { samples_ = 0.0; }
-  /// Corrects position and speed of every lane by its error, measured less modelled position.
-  /// Returns the position's gain.
-  double correct(Ensemble& ensemble, const Ensemble::Values& error_m, double sample_time_s) {
-    samples_ += 1.0;
-    const double all = samples_ * (samples_ + 1.0);
-    const double gain = 2.0 * (2.0 * samples_ - 1.0) / all;
-    Ensemble::Values by_m{};
+  /// True while the speed follows the readings too.
+  [[nodiscard]] bool finds_speed(std::size_t k) const noexcept {
+    return speed_ && record_.initialising[k] != kNotInitialising && gain(k).speed_per_s > 0.0;
+  }
+
+  /// Corrects every lane by its error at sample k, measured less modelled position.
+  void apply(Ensemble& ensemble, std::size_t k, const Ensemble::Values& error_m) const {
+    const ObserverGain by = gain(k);
+    if (!(by.position > 0.0)) return;
+    Ensemble::Values shift_m{};
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+      shift_m[lane] = by.position * error_m[lane];
+    }
+    ensemble.shift(shift_m);
+    if (!(by.speed_per_s > 0.0)) return;
     Ensemble::Values speed_mps = ensemble.state(*speed_);
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
-      by_m[lane] = gain * error_m[lane];
-      // one sample shows no speed
-      if (samples_ > 1.0) speed_mps[lane] += 6.0 / all * error_m[lane] / sample_time_s;
+      speed_mps[lane] += by.speed_per_s * error_m[lane];
     }
-    ensemble.shift(by_m);
     ensemble.set_state(*speed_, speed_mps);
-    return gain;
   }
 
  private:
-  std::optional<std::size_t> speed_;
-  double samples_ = 0.0;  ///< number of samples since the segment began
+  const Dataset& record_;
+  double observer_per_s_;
+  std::optional<std::size_t> speed_;  ///< where it is free
 };
 
 }  // namespace estimator::greybox

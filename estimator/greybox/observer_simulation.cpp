@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
-#include "estimator/greybox/starting_speed.h"
+#include "estimator/greybox/observer_correction.h"
 
 namespace estimator::greybox {
 
@@ -191,7 +191,7 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
   const bool loads = added_N.size() > 0 && found.has_value();
   const std::size_t load = found.value_or(0);
   double load_N = loads ? ensemble_->get(load, 0) : 0.0;
-  StartingSpeed starting(*ensemble_);
+  const ObserverCorrection observer(*ensemble_, record, observer_per_s_);
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
@@ -199,11 +199,9 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
     if (loads && schedule_.changes(load)) load_N = ensemble_->get(load, 0);
     if (segment < record.starts.size() && record.starts[segment] == row) {
       ensemble_->start(record.y_m[row]);
-      starting.begin();
       ++segment;
     }
     const Ensemble::Values reading_m = ensemble_->reading_m();
-    const double gain = record.observer_gain(row, observer_per_s_);
     Ensemble::Values error_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
       error_m[lane] = record.y_m[row] - reading_m[lane];
@@ -215,7 +213,7 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
     speed_mps_[row] = ensemble_->speed_mps()[0];
     predicted_.rod_m[row] = ensemble_->state(position_)[0];
     predicted_.reading_m[row] = reading_m[0];
-    predicted_.correction_m[row] = gain * error_m[0];
+    predicted_.correction_m[row] = observer.gain(row).position * error_m[0];
     if (chambers != nullptr) {
       const plant_sim::PressuresOf<Ensemble::Values> model = ensemble_->pressures();
       for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
@@ -223,14 +221,7 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
         chambers->out_Pa(k, lane) = model.out_Pa[static_cast<std::size_t>(lane)];
       }
     }
-    if (gain > observer_per_s_ * record.sample_time_s && starting.is_free()) {
-      predicted_.correction_m[row] =
-          starting.correct(*ensemble_, error_m, record.sample_time_s) * error_m[0];
-    } else if (gain > 0.0) {
-      Ensemble::Values by_m{};
-      for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) by_m[lane] = gain * error_m[lane];
-      ensemble_->shift(by_m);
-    }
+    observer.apply(*ensemble_, row, error_m);
     Ensemble::Values u_V;
     u_V.fill(record.u_V[row]);
     for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "estimator/greybox/observer_correction.h"
 #include "estimator/greybox/observer_simulation.h"
-#include "estimator/greybox/starting_speed.h"
 #include "plant_sim/ensemble.h"
 #include "plant_sim/ensemble_schedule.h"
 #include "plant_sim/plant.h"
@@ -30,13 +30,12 @@ Trajectory trajectory_of(const plant_sim::ModelFile& model, const Dataset& recor
       trajectory.states.back().second.reserve(record.size());
     }
   }
-  StartingSpeed starting(*ensemble);
+  const ObserverCorrection observer(*ensemble, record, observer_per_s);
   std::size_t segment = 0;
   for (std::size_t k = 0; k < record.size(); ++k) {
     schedule.apply(*ensemble, record.t_s[k], record.sample_time_s);
     if (segment < record.starts.size() && record.starts[segment] == k) {
       ensemble->start(record.y_m[k]);
-      starting.begin();
       ++segment;
     }
     const double reading_m = ensemble->reading_m()[0];
@@ -45,15 +44,8 @@ Trajectory trajectory_of(const plant_sim::ModelFile& model, const Dataset& recor
       trajectory.states[s].second.push_back(ensemble->state(index[s])[0]);
     }
     Ensemble::Values values;
-    const double gain = record.observer_gain(k, observer_per_s);
-    const double error_m = record.y_m[k] - reading_m;
-    if (gain > observer_per_s * record.sample_time_s && starting.is_free()) {
-      values.fill(error_m);
-      (void)starting.correct(*ensemble, values, record.sample_time_s);
-    } else if (gain > 0.0) {
-      values.fill(gain * error_m);
-      ensemble->shift(values);
-    }
+    values.fill(record.y_m[k] - reading_m);
+    observer.apply(*ensemble, k, values);
     values.fill(record.u_V[k]);
     ensemble->advance(values, record.sample_time_s);
   }

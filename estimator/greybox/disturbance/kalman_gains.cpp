@@ -27,7 +27,11 @@ double fastest_mps(const Linearisation& model) {
 
 StateMatrix start_covariance(const Linearisation& model, const Dataset& record, std::size_t k,
                              const NoiseParameters& noise, double fastest_mps) {
-  const bool moving = k < record.initialising.size() && record.initialising[k] != kNotInitialising;
+  const Initialisation begins = k < record.initialising.size()
+                                    ? static_cast<Initialisation>(record.initialising[k])
+                                    : kNotInitialising;
+  const bool moving =
+      begins > (start_of(model.states) == PlantStart::any_speed ? kNotInitialising : kFromRest);
   const double pressure_Pa = moving ? kPressureMoving_Pa : kPressureAtRest_Pa;
   StateMatrix p = StateMatrix::Zero();
   p(0, 0) = noise.sensor_m * noise.sensor_m;
@@ -113,6 +117,7 @@ double disturbed_rms_m(const Linearisation& model, const Dataset& record,
   StateMatrix p = StateMatrix::Zero();
   double sum_m2 = 0.0;
   double counted = 0.0;
+  const PlantStart plant = start_of(model.states);
   std::size_t segment = 0;
   for (std::size_t k = 0; k < record.size(); ++k) {
     if (segment < record.starts.size() && record.starts[segment] == k) {
@@ -125,11 +130,14 @@ double disturbed_rms_m(const Linearisation& model, const Dataset& record,
       sum_m2 += p(0, 0) + r_m2;
       counted += 1.0;
     }
+    const ObserverGain gain = record.observer_gain(k, kObserver_per_s, plant);
+    StateVector l = StateVector::Zero();
+    l[0] = gain.position;
+    l[1] = gain.speed_per_s;  // the speed, where it is corrected
     StateMatrix correct = StateMatrix::Identity();
-    const double l = record.observer_gain(k, kObserver_per_s);
-    correct(0, 0) -= l;
+    correct.col(0) -= l;
     p = (correct * p * correct.transpose()).eval();
-    p(0, 0) += l * l * r_m2;
+    p += r_m2 * l * l.transpose();
     propagate(p, model.transition[k], decay, noise);
   }
   return std::sqrt(sum_m2 / std::max(counted, 1.0));

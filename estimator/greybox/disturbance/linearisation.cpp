@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/greybox/disturbance/model_ensemble.h"
+#include "estimator/greybox/observer_correction.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/library.h"
 
@@ -73,6 +74,13 @@ std::vector<double> gaps_m(const plant_sim::ModelFile& model, const Dataset& rec
 
 }  // namespace
 
+PlantStart start_of(const std::vector<std::string>& states) {
+  const auto has = [&](const char* name) {
+    return std::find(states.begin(), states.end(), name) != states.end();
+  };
+  return has("v_mps") && !has("pressure_in_Pa") ? PlantStart::any_speed : PlantStart::held_by_oil;
+}
+
 Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
                         const std::vector<FreeParameter>& parameters,
                         const Eigen::VectorXd& theta) {
@@ -113,6 +121,7 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
   result.transition.assign(samples, StateMatrix::Zero());
   result.from_supply.assign(samples, StateVector::Zero());
   result.speed_mps.resize(samples);
+  const ObserverCorrection observer(*ensemble, record, kObserver_per_s);
   std::size_t segment = 0;
   for (std::size_t k = 0; k < samples; ++k) {
     if (segment < record.starts.size() && record.starts[segment] == k) {
@@ -120,10 +129,9 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
       ++segment;
     }
     result.speed_mps[k] = ensemble->speed_mps()[kOwn];
-    Ensemble::Values shift_m{};
-    shift_m[kOwn] =
-        record.observer_gain(k, kObserver_per_s) * (record.y_m[k] - ensemble->reading_m()[kOwn]);
-    ensemble->shift(shift_m);
+    Ensemble::Values error_m{};
+    error_m[kOwn] = record.y_m[k] - ensemble->reading_m()[kOwn];
+    observer.apply(*ensemble, k, error_m);
     for (const std::size_t state : every) {
       Ensemble::Values values = ensemble->state(state);
       values.fill(values[kOwn]);

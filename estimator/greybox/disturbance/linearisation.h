@@ -36,6 +36,9 @@ struct Linearisation {
   std::vector<double> gap_m;
 };
 
+/// Start of the plant that has these states.
+[[nodiscard]] PlantStart start_of(const std::vector<std::string>& states);
+
 /// About the simulation with `theta` (weak observer). Throws as ObserverSimulation does.
 [[nodiscard]] Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
                                       const std::vector<FreeParameter>& parameters,

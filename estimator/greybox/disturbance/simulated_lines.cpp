@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "estimator/greybox/disturbance/model_ensemble.h"
+#include "estimator/greybox/observer_correction.h"
 #include "estimator/greybox/observer_simulation.h"
 
 namespace estimator::greybox::disturbance {
@@ -59,6 +60,7 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
   const double load_N = load ? ensemble->get(*load, kPlain) : 0.0;
   const double supply_Pa = supply ? ensemble->get(*supply, kPlain) : 0.0;
   Eigen::VectorXd moved_m(static_cast<Eigen::Index>(record.size()));
+  const ObserverCorrection observer(*ensemble, record, kObserver_per_s);
   std::size_t segment = 0;
   for (std::size_t k = 0; k < record.size(); ++k) {
     const LineValues line = values_at(record.t_s[k], lines, waves);
@@ -72,14 +74,17 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
     const Ensemble::Values reading_m = ensemble->reading_m();
     const double now_m = reading_m[kMoved] - reading_m[kPlain] + line.reading_m;
     moved_m[static_cast<Eigen::Index>(k)] = now_m;
-    const double gain = record.observer_gain(k, kObserver_per_s);
-    Ensemble::Values shift_m;
-    shift_m.fill(gain * (record.y_m[k] - reading_m[kPlain]));
+    Ensemble::Values error_m;
+    error_m.fill(record.y_m[k] - reading_m[kPlain]);
     if (correction == Correction::own) {
-      shift_m[kMoved] = gain * (record.y_m[k] - reading_m[kMoved] - line.reading_m);
+      error_m[kMoved] = record.y_m[k] - reading_m[kMoved] - line.reading_m;
     }
-    if (!load) shift_m[kMoved] += line.force * record.sample_time_s;
-    ensemble->shift(shift_m);
+    observer.apply(*ensemble, k, error_m);
+    if (!load) {
+      Ensemble::Values moved{};
+      moved[kMoved] = line.force * record.sample_time_s;
+      ensemble->shift(moved);
+    }
     if (load) ensemble->set(*load, kMoved, load_N + line.force);
     if (supply) ensemble->set(*supply, kMoved, supply_Pa + line.supply_Pa);
     Ensemble::Values u_V;

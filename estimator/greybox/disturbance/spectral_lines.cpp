@@ -195,9 +195,16 @@ std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model, const Dataset
 LineAmplitude line_amplitude(const Linearisation& model, const Dataset& record,
                              const SpectralLine& line, const Eigen::Vector2d& wave) {
   const auto samples = static_cast<Index>(record.size());
-  InnovationGains weak{{"y_m"}, MatrixXd::Zero(2, samples), 0.0, VectorXd::Ones(samples), {}, {}};
+  const PlantStart plant = start_of(model.states);
+  InnovationGains weak{{"y_m", "v_mps"}, {}, 0.0, VectorXd::Ones(samples), {}, {}};
+  if (plant == PlantStart::held_by_oil) weak.states.pop_back();
+  weak.gain.resize(static_cast<Index>(weak.states.size()) + 1, samples);
+  weak.gain.setZero();
   for (Index k = 0; k < samples; ++k) {
-    weak.gain(0, k) = record.observer_gain(static_cast<std::size_t>(k), kObserver_per_s);
+    const ObserverGain gain =
+        record.observer_gain(static_cast<std::size_t>(k), kObserver_per_s, plant);
+    weak.gain(0, k) = gain.position;
+    if (plant == PlantStart::any_speed) weak.gain(1, k) = gain.speed_per_s;
   }
   const VectorXd seen = line_response(model, record, weak, line) * wave;
   // the first half holds the transient of a line that sets in with the record

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/observer_correction.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/ensemble.h"
 #include "plant_sim/ensemble_schedule.h"
@@ -36,6 +37,7 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Datase
   const auto ensemble = plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
   plant_sim::EnsembleSchedule schedule(model, *ensemble);
   schedule.begin(*ensemble);
+  const ObserverCorrection start(*ensemble, record, kObserver_per_s);
   std::vector<double> squares(result.size(), 0.0);
   for (const SampleRange& span : segments(record)) {
     // at rest under the parameters of that time
@@ -45,10 +47,12 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Datase
     for (std::size_t k = span.begin; k < span.end; ++k) {
       schedule.apply(*ensemble, record.t_s[k], record.sample_time_s);
       const Ensemble::Values reading_m = ensemble->reading_m();
+      const bool starts = start.finds_speed(k);
       Ensemble::Values by_m{};
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Lane& lane = all[i];
-        if ((k - span.begin) % lane.samples != lane.offset % lane.samples) continue;
+        if (starts) by_m[i] = record.y_m[k] - reading_m[i];
+        if (starts || (k - span.begin) % lane.samples != lane.offset % lane.samples) continue;
         const double error_m = record.y_m[k] - reading_m[i];
         if (k - synchronised[i] == lane.samples && record.valid[synchronised[i]] != 0) {
           squares[lane.horizon] += error_m * error_m;
@@ -57,7 +61,11 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Datase
         by_m[i] = error_m;
         synchronised[i] = k;
       }
-      ensemble->shift(by_m);
+      if (starts) {
+        start.apply(*ensemble, k, by_m);
+      } else {
+        ensemble->shift(by_m);
+      }
       Ensemble::Values u_V;
       u_V.fill(record.u_V[k]);
       ensemble->advance(u_V, record.sample_time_s);

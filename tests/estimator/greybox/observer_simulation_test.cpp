@@ -165,6 +165,48 @@ TEST(ObserverSimulation, CatchesAMotionThatItsSegmentBeginsIn) {
   }
 }
 
+/// The value at `n` of the straight line of least squares through the first n positions.
+double line_through_first_m(const std::vector<double>& y_m, std::size_t n) {
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(n), 2);
+  for (std::size_t k = 0; k < n; ++k) {
+    columns.row(static_cast<Eigen::Index>(k)) << 1.0, static_cast<double>(k);
+  }
+  const Eigen::Map<const Eigen::VectorXd> values(y_m.data(), columns.rows());
+  const Eigen::Vector2d line = columns.colPivHouseholderQr().solve(values);
+  return line[0] + line[1] * static_cast<double>(n);
+}
+
+TEST(ObserverSimulation, AnAxisWithoutForceFollowsTheLineThroughTheSamplesOfItsStart) {
+  plant_sim::ModelFile file = model("force_driven_axis");
+  *file.value("damping_N_s_per_m") = 1e-9;
+  Dataset m = record();
+  m.starts = {0};
+  m.u_V.assign(m.size(), 0.0);
+  for (const Initialisation begins : {kFromRest, kInitialisingIfObserved, kInitialising}) {
+    m.initialising.assign(m.size(), kNotInitialising);
+    std::fill_n(m.initialising.begin(), 100, static_cast<char>(begins));
+    ObserverSimulation run(file, m, {}, 2.0);
+    Eigen::MatrixXd residuals_m;
+    run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
+    for (const std::size_t n : {2U, 3U, 17U, 100U}) {
+      EXPECT_NEAR(run.predicted().reading_m[n], line_through_first_m(m.y_m, n), 1e-9) << n;
+    }
+  }
+}
+
+TEST(ObserverSimulation, AFreeRunOfAnAxisFromRestKeepsTheStateOfTheFile) {
+  plant_sim::ModelFile file = model("force_driven_axis");
+  Dataset m = record();
+  m.starts = {0};
+  m.u_V.assign(m.size(), 0.0);
+  m.initialising.assign(m.size(), kNotInitialising);
+  std::fill_n(m.initialising.begin(), 100, static_cast<char>(kFromRest));
+  ObserverSimulation run(file, m, {}, 0.0);
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
+  EXPECT_NEAR(run.predicted().reading_m.back(), m.y_m.front(), 1e-12);
+}
+
 TEST(ObserverSimulation, RefusesAParameterThatTheModelDoesNotHave) {
   const Dataset m = record();
   EXPECT_THROW(ObserverSimulation(model("velocity_servo"), m, {{"mass_kg"}}),
