@@ -10,16 +10,14 @@ namespace config::record {
 
 namespace {
 
-constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212, as word processors write it
-
 /// With "-" for that sign, at the front and in the exponent.
 std::string with_plain_minus(std::string_view field) {
   std::string plain;
   while (!field.empty()) {
     const bool sign = plain.empty() || plain.back() == 'e' || plain.back() == 'E';
-    const bool minus = sign && field.starts_with(kMinus);
+    const bool minus = sign && field.starts_with(kMinusSign);
     plain += minus ? '-' : field.front();
-    field.remove_prefix(minus ? kMinus.size() : 1);
+    field.remove_prefix(minus ? kMinusSign.size() : 1);
   }
   return plain;
 }
@@ -73,7 +71,7 @@ bool is_missing(std::string_view field) {
   if (field.empty()) return true;
   if (field.size() > 9 || is_digit(field.front())) return field == "1.#QNAN" || field == "1.#IND";
   // A lone minus sign or dash, as word processors write it.
-  if (field == kMinus || field == "\xE2\x80\x93" || field == "\xE2\x80\x94") return true;
+  if (field == kMinusSign || field == "\xE2\x80\x93" || field == "\xE2\x80\x94") return true;
   const std::string word = lower(field);
   for (const std::string_view missing :
        {"nan",  "-nan", "+nan", "nan(ind)", "-nan(ind)", "na",      "n/a",
@@ -140,7 +138,7 @@ bool ungroup(std::string_view field, char decimal, LoneGroup lone, std::array<ch
 }  // namespace
 
 bool parse_number(std::string_view field, char decimal, double& value, LoneGroup lone) {
-  if (field.find(kMinus) != std::string_view::npos) {
+  if (field.find(kMinusSign) != std::string_view::npos) {
     const std::string plain = with_plain_minus(field);
     return plain.size() < field.size() && parse_number(plain, decimal, value, lone);
   }

@@ -13,6 +13,9 @@ namespace config::record {
 }
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
+/// U+2212, as word processors write a minus sign.
+inline constexpr std::string_view kMinusSign = "\xE2\x88\x92";
+
 /// Without blanks around.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);

@@ -17,8 +17,7 @@ std::string unit_text_of(std::string_view suffix) {
 }
 
 bool begins_as_number(std::string_view field) {
-  constexpr std::string_view kMinus = "\xE2\x88\x92";
-  return !field.empty() && (is_digit(field.front()) || field.starts_with(kMinus) ||
+  return !field.empty() && (is_digit(field.front()) || field.starts_with(kMinusSign) ||
                             std::string_view("+-.,").find(field.front()) != std::string_view::npos);
 }
 
