@@ -11,10 +11,11 @@
 #include "config/record/column_words.h"
 #include "config/record/interpolation.h"
 #include "config/record/layout.h"
+#include "config/record/missing_marks.h"
+#include "config/record/record_notes.h"
 #include "config/record/time_grid.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
-#include "config/units/quantity.h"
 
 namespace config::record {
 namespace {
@@ -38,6 +39,7 @@ class Assembly {
   }
 
   Record record() {
+    take_missing_marks();
     for (const Channel& channel : layout_.channels) note_origin(channel);
     if (own_times() && options_.resample.empty()) {
       throw bad_data(file_.name, "--map: channels with times of their own share no rows",
@@ -49,8 +51,8 @@ class Assembly {
     } else {
       resample();
     }
-    note_units();
-    note_constants();
+    note_units(record_);
+    note_constants(record_);
     return std::move(record_);
   }
 
@@ -61,6 +63,50 @@ class Assembly {
   }
 
   Values& raw(const Channel& channel) { return file_.values[channel.column]; }
+
+  /// Times of the rows of a channel, in s.
+  [[nodiscard]] Values times_of(const Channel& channel) const {
+    const Channel* const time = layout_.of(Role::time);
+    Values t_s;
+    if (channel.times != Channel::kSharedTimes) {
+      t_s = file_.values[channel.times];
+      // In the unit of the shared times: one clock writes them all.
+      for (double& t : t_s) t *= time != nullptr ? time->factor : 1.0;
+    } else if (time != nullptr) {
+      t_s = file_.values[time->column];
+      scale(*time, t_s);
+    } else {
+      t_s.resize(file_.values[channel.column].size());
+      for (std::size_t i = 0; i < t_s.size(); ++i) {
+        t_s[i] = static_cast<double>(i) * layout_.step_s;
+      }
+    }
+    return t_s;
+  }
+
+  /// Makes marks of missing positions what they stand for: NaN.
+  void take_missing_marks() {
+    const Channel* const position = layout_.of(Role::position);
+    if (position == nullptr) return;
+    Values& values = raw(*position);
+    std::vector<std::size_t> marks = find_missing_marks(values, position->factor);
+    if (marks.empty()) return;
+    const Values t_s = times_of(*position);
+    std::erase_if(marks, [&](std::size_t row) { return std::isnan(t_s[row]); });
+    if (marks.empty()) return;
+    const double mark = values[marks.front()] * position->factor + position->offset;
+    for (const std::size_t row : marks) values[row] = std::numeric_limits<double>::quiet_NaN();
+    missing_marks_ = marks.size();
+    note_left_out(fmt::format("{:.6g} {} at {:.6g} s ({} {}) marks missing values: they are {}",
+                              mark, unit_words(record_.position_unit), t_s[marks.front()],
+                              marks.size(), marks.size() == 1 ? "sample" : "samples",
+                              options_.resample.empty() ? "gaps" : "left out"));
+  }
+
+  void note_left_out(const std::string& note) {
+    record_.left_out += (record_.left_out.empty() ? "" : "; ") + note;
+    record_.notes.push_back(note);
+  }
 
   void note_origin(const Channel& channel) {
     Values& values = raw(channel);
@@ -103,7 +149,7 @@ class Assembly {
   }
 
   void take_rows() {
-    const Channel* const time = layout_.of(Role::time);
+    if (layout_.of(Role::time) == nullptr) record_.t_s = times_of(*layout_.of(Role::command));
     for (const Channel& channel : layout_.channels) {
       switch (channel.role) {
         case Role::time:
@@ -124,19 +170,12 @@ class Assembly {
       record_.has_position = false;
       record_.y_m.assign(record_.u_V.size(), 0.0);
     }
-    if (time == nullptr) {
-      record_.t_s.resize(record_.u_V.size());
-      for (std::size_t i = 0; i < record_.t_s.size(); ++i) {
-        record_.t_s[i] = static_cast<double>(i) * layout_.step_s;
-      }
-    }
     const auto missing = [this](std::size_t i) {
       return std::isnan(record_.t_s[i]) || std::isnan(record_.u_V[i]) || std::isnan(record_.y_m[i]);
     };
-    if (const std::size_t count = leave_out(missing); count > 0) {
-      record_.notes.push_back(
-          fmt::format("{} {} without a number in time, command or position {} left out", count,
-                      count == 1 ? "row" : "rows", count == 1 ? "is" : "are"));
+    if (const std::size_t count = leave_out(missing) - missing_marks_; count > 0) {
+      note_left_out(fmt::format("{} {} without a number in time, command or position {} left out",
+                                count, count == 1 ? "row" : "rows", count == 1 ? "is" : "are"));
     }
     leave_out_repeated();
   }
@@ -193,24 +232,29 @@ class Assembly {
     return file_.place(row_.empty() || i >= row_.size() ? i : row_[i]);
   }
 
+  /// Why samples are missing, behind a refusal: a note is lost with the record.
+  [[nodiscard]] std::string left_out() const {
+    return record_.left_out.empty() ? "" : "; " + record_.left_out;
+  }
+
   [[noreturn]] void refuse_grid(const schema::DataError& uneven) const {
     const Values& t_s = record_.t_s;
     if (const std::optional<UnevenTick> odd = find_uneven_tick(t_s)) {
-      throw bad_data(
-          place(odd->first),
-          fmt::format("{} rows between {:.9g} s and {:.9g} s, {} elsewhere: rows are "
-                      "missing, or the rate changes",
-                      odd->samples, t_s[odd->first], t_s[odd->first] + odd->tick_s, odd->usual),
-          "as many rows in every tick of the clock, or --map t=RATEHz, which takes the "
-          "rows as they follow");
+      throw bad_data(place(odd->first),
+                     fmt::format("{} rows between {:.9g} s and {:.9g} s, {} elsewhere: rows are "
+                                 "missing, or the rate changes{}",
+                                 odd->samples, t_s[odd->first], t_s[odd->first] + odd->tick_s,
+                                 odd->usual, left_out()),
+                     "as many rows in every tick of the clock, or --map t=RATEHz, which takes the "
+                     "rows as they follow");
     }
+    std::string way_out;
     if (share_ticks(t_s)) {
-      throw schema::DataError(
-          std::string(uneven.what()) +
-          ": its clock is too coarse to tell the rate; state it with --map t=RATEHz");
+      way_out = ": its clock is too coarse to tell the rate; state it with --map t=RATEHz";
+    } else if (t_s.size() >= 3 && increases(t_s)) {
+      way_out = "; or --resample, which interpolates";
     }
-    if (t_s.size() < 3 || !increases(t_s)) throw schema::DataError(uneven.what());
-    throw schema::DataError(std::string(uneven.what()) + "; or --resample, which interpolates");
+    throw schema::DataError(uneven.what() + way_out + left_out());
   }
 
   void take_grid() {
@@ -241,29 +285,13 @@ class Assembly {
 
   void resample() {
     const double rate_Hz = parse_resample(options_.resample);
-    const Channel* const time = layout_.of(Role::time);
-    const std::size_t rows = raw(*layout_.of(Role::command)).size();
-    Values shared;
-    if (time != nullptr) {
-      shared = raw(*time);
-      scale(*time, shared);
-    } else {
-      for (std::size_t i = 0; i < rows; ++i) {
-        shared.push_back(static_cast<double>(i) * layout_.step_s);
-      }
-    }
     std::vector<std::pair<const Channel*, Series>> all;
     double from_s = -std::numeric_limits<double>::infinity();
     double to_s = std::numeric_limits<double>::infinity();
     double period_s = std::numeric_limits<double>::infinity();
     for (const Channel& channel : layout_.channels) {
       if (channel.role == Role::time) continue;
-      Values t_s = shared;
-      if (channel.times != Channel::kSharedTimes) {
-        t_s = file_.values[channel.times];
-        // In the unit of the shared times: one clock writes them all.
-        for (double& t : t_s) t *= time != nullptr ? time->factor : 1.0;
-      }
+      const Values t_s = times_of(channel);
       Series series;
       const Values& values = raw(channel);
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -272,7 +300,8 @@ class Assembly {
         series.values.push_back(values[i] * channel.factor + channel.offset);
       }
       if (channel.role != Role::further) {
-        if (series.t_s.size() < 3) throw bad_data(file_.name, "has fewer than 3 samples");
+        if (series.t_s.size() < 3)
+          throw bad_data(file_.name, "has fewer than 3 samples" + left_out());
         require_increasing(series.t_s);
         from_s = std::max(from_s, series.t_s.front());
         to_s = std::min(to_s, series.t_s.back());
@@ -341,46 +370,14 @@ class Assembly {
     keep(record_.u_V);
     keep(record_.y_m);
     for (auto& [name, values] : record_.further) keep(values);
-    if (record_.t_s.size() < 3) throw bad_data(file_.name, "has fewer than 3 samples");
-  }
-
-  void note_units() {
-    if (record_.command_unit != "V") {
-      record_.notes.push_back("the command is in " + unit_words(record_.command_unit) +
-                              ": every V of the results stands for 1 " +
-                              unit_words(record_.command_unit));
-    }
-    // `_m` stands for rad in everything about an axis that turns.
-    const bool as_printed =
-        record_.position_unit == "m" || record_.position_unit == config::units::axis_unit("m");
-    if (!as_printed) {
-      record_.notes.push_back("the position is in " + unit_words(record_.position_unit) +
-                              ": every " + config::units::axis_unit("m") +
-                              " of the results stands for 1 " + unit_words(record_.position_unit));
-    }
-  }
-
-  void note_constants() {
-    const auto is_constant = [](const Values& values) {
-      return !values.empty() && std::all_of(values.begin(), values.end(),
-                                            [&](double value) { return value == values.front(); });
-    };
-    if (!record_.has_position) return;
-    if (is_constant(record_.u_V)) {
-      record_.notes.push_back(
-          fmt::format("the command is {:.6g} {} throughout: nothing can be learned of its effect",
-                      record_.u_V.front(), unit_words(record_.command_unit)));
-    }
-    if (is_constant(record_.y_m)) {
-      record_.notes.push_back(fmt::format("the position is {:.6g} {} throughout",
-                                          record_.y_m.front(), unit_words(record_.position_unit)));
-    }
+    if (record_.t_s.size() < 3) throw bad_data(file_.name, "has fewer than 3 samples" + left_out());
   }
 
   const Layout& layout_;
   FileValues file_;
   const ReadOptions& options_;
   Record record_;
+  std::size_t missing_marks_ = 0;
   std::vector<std::size_t> row_;  ///< the file's row behind each sample; empty: the same
 };
 

@@ -44,6 +44,7 @@ struct Record {
   std::vector<std::pair<std::string, std::vector<double>>> further;
   std::vector<std::size_t> gaps;   ///< index of the first sample after each gap, ascending
   std::vector<std::string> notes;  ///< remarks for results: samples left out, ...
+  std::string left_out;            ///< those of `notes` that say why samples are missing
   /// Units of u_V and y_m where they are no volts and metres, as endings of names: "A", "pct", "N",
   /// "rad", ... Every V or m of a result then stands for one of these.
   std::string command_unit = "V";

@@ -92,48 +92,6 @@ std::vector<Segment> segments_of(const config::record::Record& record) {
   return segments;
 }
 
-/// -9999 and the like, by which many loggers mark missing values; `factor`: m in the file's unit.
-bool is_mark(double value_m, double factor) {
-  constexpr double kRounding = 1e-9;
-  for (const double mark : {999.0, 9999.0, 99999.0}) {
-    for (const double scale : {1.0, 1e-3, std::abs(factor)}) {
-      const double mark_m = mark * scale;
-      if (std::abs(std::abs(value_m) - mark_m) <= kRounding * mark_m) return true;
-    }
-  }
-  return false;
-}
-
-/// True for each sample at a mark that is far from all positions that are none.
-std::vector<bool> missing_samples(const std::vector<double>& y_m, double factor) {
-  constexpr double kFarOff = 0.1;  // the greatest of the others, in marks
-  double rest_m = 0.0;
-  for (const double one_m : y_m) {
-    if (!is_mark(one_m, factor)) rest_m = std::max(rest_m, std::abs(one_m));
-  }
-  std::vector<bool> missing(y_m.size());
-  for (std::size_t k = 0; k < y_m.size(); ++k) {
-    missing[k] = is_mark(y_m[k], factor) && rest_m < kFarOff * std::abs(y_m[k]);
-  }
-  return missing;
-}
-
-/// The segments without missing samples, which are gaps.
-std::vector<Segment> without(const std::vector<bool>& missing,
-                             const std::vector<Segment>& segments) {
-  std::vector<Segment> rest;
-  for (const Segment& segment : segments) {
-    std::size_t begin = segment.begin;
-    for (std::size_t k = segment.begin; k < segment.end; ++k) {
-      if (!missing[k]) continue;
-      if (k > begin) rest.push_back({begin, k});
-      begin = k + 1;
-    }
-    if (begin < segment.end) rest.push_back({begin, segment.end});
-  }
-  return rest;
-}
-
 }  // namespace
 
 double Dataset::observer_gain(std::size_t k, double observer_per_s) const noexcept {
@@ -164,13 +122,11 @@ Dataset dataset_of(const config::record::Record& record) {
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
-  double position_factor = 1.0;
   for (const config::record::ChannelOrigin& origin : record.origins) {
     if (origin.name == "u_" + record.command_unit) {
       result.command_column = {origin.header, origin.unit, origin.factor < 0.0};
     } else if (origin.name == "y_" + record.position_unit) {
       result.position_column = {origin.header, origin.unit, origin.factor < 0.0};
-      position_factor = origin.factor;
     }
   }
   if (record.sample_time_s > kSlowest_s) {
@@ -179,16 +135,7 @@ Dataset dataset_of(const config::record::Record& record) {
   }
   refuse_spikes(record, record.y_m, kFarthest_m, "position", "m");
   refuse_spikes(record, record.u_V, kGreatest_V, "command", "V");
-  std::vector<Segment> segments = segments_of(record);
-  const std::vector<bool> missing = missing_samples(record.y_m, position_factor);
-  const auto first = std::find(missing.begin(), missing.end(), true) - missing.begin();
-  if (const auto count = std::count(missing.begin(), missing.end(), true); count > 0) {
-    segments = without(missing, segments);
-    result.notes.push_back(fmt::format(
-        "{:.6g} m at {:.6g} s ({} {}) marks missing values: they are gaps",
-        record.y_m[static_cast<std::size_t>(first)], record.t_s[static_cast<std::size_t>(first)],
-        count, count == 1 ? "sample" : "samples"));
-  }
+  const std::vector<Segment> segments = segments_of(record);
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
   std::size_t left_out = 0;
   std::size_t longest = 0;
@@ -211,7 +158,8 @@ Dataset dataset_of(const config::record::Record& record) {
                   " segments, the longest " +
                   seconds(static_cast<double>(longest) * record.sample_time_s) + ", " +
                   seconds(length_s) + " are in segments of " + seconds(kShortest_s) + " or more";
-    throw config::schema::bad_data(record.name, what, "at least " + seconds(kLeast_s));
+    const std::string why = record.left_out.empty() ? "" : "; " + record.left_out;
+    throw config::schema::bad_data(record.name, what + why, "at least " + seconds(kLeast_s));
   }
   return result;
 }

@@ -97,32 +97,15 @@ TEST(Dataset, NamesTheTimeOfASpikeThatNoRigHas) {
   EXPECT_THROW((void)dataset_of(spiked), config::schema::DataError);
 }
 
-TEST(Dataset, TakesMarksOfMissingValuesForGaps) {
-  config::record::Record marked = record(900);
-  EXPECT_TRUE(dataset_of(marked).notes.empty());
-  marked.y_m[300] = marked.y_m[301] = -9999.0;
-  marked.y_m[600] = 9999.0;
-  const Dataset data = dataset_of(marked);
-  EXPECT_THAT(data.starts, ElementsAre(0U, 300U, 598U));
-  EXPECT_EQ(data.size(), 897U);
-  EXPECT_EQ(data.y_m[300], 302.0);
-  EXPECT_EQ(data.gaps.gaps, 2U);
-  ASSERT_EQ(data.notes.size(), 1U);
-  EXPECT_THAT(data.notes[0], HasSubstr("-9999 m at 3 s (3 samples) marks missing values"));
-}
-
-TEST(Dataset, KnowsTheMarkInTheUnitOfTheFile) {
-  config::record::Record marked = record(900);
-  for (double& y_m : marked.y_m) y_m *= 0.01;
-  const double degrees = 3.14159265358979 / 180.0;
-  config::record::ChannelOrigin& position = marked.origins.emplace_back();
-  position.name = "y_" + marked.position_unit;
-  position.factor = degrees;
-  marked.y_m[400] = -9999.0 * degrees;
-  EXPECT_EQ(dataset_of(marked).size(), 899U);
-  // a position among others is none
-  marked.y_m[400] = -9.0 * degrees;
-  EXPECT_EQ(dataset_of(marked).size(), 900U);
+TEST(Dataset, SaysWhySamplesAreMissingWhereTooFewAreLeft) {
+  config::record::Record torn = record(390, {95, 190, 285});
+  torn.left_out = "-9999 m at 0.95 s (3 samples) marks missing values: they are gaps";
+  try {
+    (void)dataset_of(torn);
+    FAIL();
+  } catch (const config::schema::DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("; " + torn.left_out + "; allowed: at least 2 s"));
+  }
 }
 
 TEST(Dataset, GivesAPartWithItsOwnSegmentsAndSettling) {
