@@ -23,6 +23,9 @@ namespace {
 using schema::bad_data;
 using Values = std::vector<double>;
 
+/// The way out where times are no help.
+constexpr const char* kStatedRate = "--map t=RATEHz, which takes the rows as they follow";
+
 std::string in_words(double time_s) {
   if (time_s >= 0.1) return fmt::format("{:.4g} s", time_s);
   return time_s >= 1e-4 ? fmt::format("{:.4g} ms", 1e3 * time_s)
@@ -245,12 +248,12 @@ class Assembly {
                                  "missing, or the rate changes{}",
                                  odd->samples, t_s[odd->first], t_s[odd->first] + odd->tick_s,
                                  odd->usual, left_out()),
-                     "as many rows in every tick of the clock, or --map t=RATEHz, which takes the "
-                     "rows as they follow");
+                     std::string("as many rows in every tick of the clock, or ") + kStatedRate);
     }
     std::string way_out;
     if (share_ticks(t_s)) {
-      way_out = ": its clock is too coarse to tell the rate; state it with --map t=RATEHz";
+      way_out =
+          std::string(": its clock is too coarse to tell the rate; state it with ") + kStatedRate;
     } else if (t_s.size() >= 3 && increases(t_s)) {
       way_out = "; or --resample, which interpolates";
     }

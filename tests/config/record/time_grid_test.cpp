@@ -114,7 +114,9 @@ TEST(TimeGrid, IsCalledCoarseWhereTicksAreSharedAlone) {
   }
   std::vector<double> coarse;
   for (int k = 0; k < 300; ++k) coarse.push_back(std::floor(k / 200.0));
-  EXPECT_THAT(error_of(file_at(coarse)), HasSubstr("too coarse to tell the rate"));
+  EXPECT_THAT(error_of(file_at(coarse)),
+              HasSubstr("too coarse to tell the rate; state it with --map t=RATEHz, which takes "
+                        "the rows as they follow"));
 }
 
 TEST(TimeGrid, IsNoneForTimesThatDriftOrAreLostInAPattern) {
