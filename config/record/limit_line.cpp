@@ -76,9 +76,20 @@ bool changes_nothing(std::string_view field, bool offset, char decimal) {
   return offset ? std::none_of(unit.begin(), unit.end(), is_digit) : is_ratio_of_one(unit);
 }
 
-/// True for all that stands for a number or a fraction: "1/100", "10^-3", "div 10", "Zehntel".
+/// True for all that stands for a number or a fraction: "1/100", "10^-3", "div 10", "Zehntel". The
+/// digits of a name are none: "AI1", "log10".
 bool states_number(std::string_view field) {
-  return std::any_of(field.begin(), field.end(), is_digit) || name_has_scale(field);
+  if (name_has_scale(field)) return true;
+  char before = ' ';
+  bool name = false;
+  for (const char c : field) {
+    const auto letter = [](char one) { return std::isalpha(static_cast<unsigned char>(one)) != 0; };
+    const bool inside = letter(before) || is_digit(before) || before == '_' || before == '.';
+    if (!inside) name = letter(c) && c != 'x';
+    if (is_digit(c) && !name) return true;
+    before = c;
+  }
+  return false;
 }
 
 /// "1/100", "x 0.1", ".001": no name, no unit.
@@ -135,6 +146,38 @@ bool is_factor_word(std::string_view field) {
   return !is_limit_word(field) && has_any(word, kParts) && !has_any(word, kOthers);
 }
 
+/// True for a number beside a word of factors or offsets that changes a value.
+bool changes_value(std::string_view field, bool offset, char decimal) {
+  field = trimmed(field);
+  return !is_missing(field) && states_number(field) && !changes_nothing(field, offset, decimal);
+}
+
+/// True where a field is a word of factors or offsets and a number behind it changes a value.
+bool has_factor(const std::vector<std::string>& fields, char decimal) {
+  for (std::size_t word = 0; word + 1 < fields.size(); ++word) {
+    const bool offset = is_offset_word(fields[word]);
+    if (!offset && !is_factor_word(fields[word])) continue;
+    for (std::size_t c = word + 1; c < fields.size(); ++c) {
+      if (changes_value(fields[c], offset, decimal)) return true;
+    }
+  }
+  return false;
+}
+
+/// "Faktor Weg" and "0.1 mm" of "Faktor Weg 0.1 mm"; empty where more is said.
+std::vector<std::string> word_and_number(std::string_view line) {
+  constexpr std::ptrdiff_t kMostBlanks = 3;  // more are those of a sentence
+  for (std::size_t at = line.find(' '); at != std::string_view::npos; at = line.find(' ', at + 1)) {
+    const std::string_view number = trimmed(line.substr(at));
+    if (!begins_as_factor(number)) continue;
+    const std::string_view word = line.substr(0, at);
+    if (std::count(word.begin(), word.end(), ' ') > kMostBlanks) return {};
+    if (std::count(number.begin(), number.end(), ' ') > 1) return {};
+    return {std::string(word), std::string(number)};
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_limit_line(const std::vector<std::string>& fields, char decimal) {
@@ -171,12 +214,17 @@ std::vector<std::string> stated_factors(const std::vector<std::string>& fields, 
   if (!marked && !offset && !is_factor_word(word)) return {};
   std::vector<std::string> factors(fields.size());
   for (std::size_t c = marked ? first : first + 1; c < fields.size(); ++c) {
-    const std::string_view field = trimmed(fields[c]);
-    if (is_missing(field) || !states_number(field)) continue;
-    if (changes_nothing(field, offset, decimal)) continue;
+    if (!changes_value(fields[c], offset, decimal)) continue;
     factors[c] = (marked ? "" : record::quoted(word) + " ") + record::quoted(fields[c]);
   }
   return factors;
+}
+
+bool states_factor(std::string_view line, char separator, char decimal) {
+  for (const char each : {separator, ':', '='}) {
+    if (has_factor(split_fields(line, each), decimal)) return true;
+  }
+  return has_factor(word_and_number(line), decimal);
 }
 
 }  // namespace config::record

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace config::record {
@@ -16,5 +17,9 @@ namespace config::record {
 /// offset of 0; empty where not. No element for a line of another kind.
 [[nodiscard]] std::vector<std::string> stated_factors(const std::vector<std::string>& fields,
                                                       char decimal);
+
+/// True for a line of however many fields that states a factor other than 1 or an offset other than
+/// 0: "Faktor Weg;0.1", "Faktor Weg = 0.1", "Faktor Weg 0.1", "Kanal 3;Faktor;0.1".
+[[nodiscard]] bool states_factor(std::string_view line, char separator, char decimal);
 
 }  // namespace config::record

@@ -242,8 +242,8 @@ class FormFinder {
                    kOneUnit);
   }
 
-  /// Notes the factors and offsets of the lines above the rows that have as many fields. A word and
-  /// one number name no column: that line is reported.
+  /// Notes the factors and offsets of the lines above the rows, by column where there are as many
+  /// fields, or one more for the word in front. Other lines name no column: they are reported.
   void note_factors(const Candidate* header, const Candidate* units) {
     for (std::size_t i = 0; i < first_; ++i) {
       if ((header != nullptr && header->line == i) || (units != nullptr && units->line == i)) {
@@ -251,31 +251,25 @@ class FormFinder {
       }
       std::vector<std::string> fields;
       const std::string_view line = without_comment_mark(lines_[i].text);
-      if (!names_in(line, fields)) {
-        if (states_one_factor(line)) {
+      const bool aligned = names_in(line, fields);
+      std::vector<std::string> stated;
+      if (aligned || fields.size() == form_.kinds.size() + 1) {
+        stated = stated_factors(fields, form_.dialect.decimal);
+      }
+      if (!aligned && !stated.empty() && stated.front().empty()) {
+        stated.erase(stated.begin());
+      } else if (!aligned) {
+        if (states_factor(line, form_.dialect.separator, form_.dialect.decimal)) {
           form_.passed.push_back({i + 1, std::string(trimmed(lines_[i].text))});
         }
         continue;
       }
-      const std::vector<std::string> stated = stated_factors(fields, form_.dialect.decimal);
       if (stated.empty()) continue;
       form_.factors.resize(form_.kinds.size());
       for (std::size_t c = 0; c < stated.size(); ++c) {
         if (!stated[c].empty()) form_.factors[c].push_back({i + 1, stated[c]});
       }
     }
-  }
-
-  /// "Faktor Weg;0.1", "Faktor Weg = 0.1"
-  [[nodiscard]] bool states_one_factor(std::string_view line) const {
-    for (const char separator : {form_.dialect.separator, ':', '='}) {
-      std::vector<std::string> fields = split_fields(line, separator);
-      std::erase_if(fields, [](const std::string& field) { return field.empty(); });
-      if (fields.size() != 2) continue;
-      const std::vector<std::string> stated = stated_factors(fields, form_.dialect.decimal);
-      if (!stated.empty() && !stated.back().empty()) return true;
-    }
-    return false;
   }
 
   [[nodiscard]] RowsBelow rows_below(bool named) const {

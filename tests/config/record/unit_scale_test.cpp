@@ -166,10 +166,25 @@ TEST(StatedFactors, AreNoneInNamesAndNotes) {
 }
 
 TEST(StatedFactors, OfNoColumnAreSaid) {
-  for (const char* line : {"Faktor Weg;0.1", "# Faktor Weg: 0.1", "Faktor Weg = 1/10"}) {
+  for (const char* line :
+       {"Faktor Weg;0.1", "# Faktor Weg: 0.1", "Faktor Weg = 1/10", "Faktor Weg 0.1",
+        "# Offset Weg 5 mm", "Faktor;0.1;1;1;1", "Kanal 3;Faktor;Weg;0.1;x", "Faktor 0.1"}) {
     const Record record = record_test::read(
         std::string(line) + "\nZeit [s];Ventil [V];Weg [mm]\n0;0;0.1\n0.005;2;0.2\n0.01;1;0.3\n");
     EXPECT_THAT(record.notes, ElementsAre(HasSubstr(line)));
+  }
+}
+
+TEST(StatedFactors, StandBehindAWordOfTheirOwnOrInItsColumn) {
+  const std::string table = "\nZeit [s];Ventil [V];Weg [mm]\n0;0;0.1\n0.005;2;0.2\n0.01;1;0.3\n";
+  for (const char* line : {"Faktor;1;1;0.1", "Faktor;;1;0.1", "# Faktor;1;1;0.1"}) {
+    expect_bad(line + table, ":2", "column Weg [mm] has 'Faktor' '0.1' in line 1");
+  }
+  expect_bad("Offset;1;1;0" + table, ":2", "column Ventil [V] has 'Offset' '1' in line 1");
+  for (const char* line : {"Faktor;1;1;1", "Offset;0;0;0", "Faktor Weg 1", "Offset Weg 0 mm",
+                           "Channel scale;AI1;AI2", "Skala;linear;log10", "Skala;;linear;log10",
+                           "Gain;Dev1/ai0;Dev1/ai1", "Gain set on Monday"}) {
+    EXPECT_THAT(record_test::read(line + table).notes, IsEmpty()) << line;
   }
 }
 
