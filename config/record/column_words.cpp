@@ -109,12 +109,16 @@ const Words kPressureWords{"pressure*", "press", "druck*"};
 /// Words of the valve, whose position is not the rod's and whose reading is no command.
 const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
 const Words kValveWords{"valve*", "servovalve", "ventil*", "sv"};
-/// Words of a voltage, current or force that drives nothing.
-const Words kNoDriveWords{"battery", "batterie*", "zwischenkreis*", "mains", "netz*",   "versorg*",
-                          "sensor*", "bridge",    "excitation",     "brake", "bremse*", "last*",
-                          "cell"};
-/// Likewise, but for those of a motor: "DC motor voltage", "Link motor torque".
-const Words kNoMotorWords{"dc", "bus", "link", "load*"};
+/// Words of a signal that drives no rod, whatever else its name says. "Plastic" is no "Last".
+const Words kNoDriveWords{
+    "battery",    "batterie*",     "zwischenkreis*", "mains",       "netz",       "netzspannung*",
+    "netzstrom*", "netzteil*",     "versorg*",       "sensor*",     "brake",      "bremse*",
+    "bus",        "relief",        "load*",          "last",        "lastkraft*", "lastmoment*",
+    "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*", "belast*"};
+/// Words of a sensor's voltage or force, unless another word speaks of a command.
+const Words kSensorWords{"bridge", "excitation", "cell"};
+/// Words of a supply, unless the supplied drive is named: "DC motor voltage", "Link motor torque".
+const Words kSupplyWords{"dc", "link"};
 const Words kMotorWords{"motor*", "drive", "antrieb*"};
 /// Words of a valve's signal that is none of its sensor's.
 const Words kValveCommandWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
@@ -264,25 +268,25 @@ bool is_reference(const ReadColumn& column) {
          std::find(kLetters.begin(), kLetters.end(), name) != kLetters.end();
 }
 
+bool may_drive(const ReadColumn& column) {
+  if (has_word(column.words, kNoDriveWords)) return false;
+  const auto supplies =
+      std::count_if(column.words.begin(), column.words.end(),
+                    [](const std::string& word) { return has_word({word}, kSupplyWords); });
+  // "Motor DC link voltage" is the link's
+  return supplies == 0 || (supplies == 1 && (has_word(column.words, kMotorWords) ||
+                                             has_word(column.words, kCommandWords)));
+}
+
 namespace {
 
 /// The command of a valve that a closed loop within it follows: "Valve setpoint [%]", "Valve
-/// position setpoint [%]".
+/// position setpoint [%]". A relief valve's is a pressure, a load valve's another machine's.
 bool is_valve_set_point(const ReadColumn& column) {
   const Words rod{"rod", "piston*", "kolben*", "cylinder*", "zylinder*", "stroke"};
-  return is_reference(column) && has_word(column.words, kValveWords) &&
+  return is_reference(column) && has_word(column.words, kValveWords) && may_drive(column) &&
          !has_word(column.words, kOtherWords) && !has_word(column.words, rod) &&
          column.text.unit.known();
-}
-
-/// True for all that drives: a motor's voltage, no battery's.
-bool may_drive(const ReadColumn& column) {
-  if (has_word(column.words, kNoDriveWords)) return false;
-  const auto not_of_motor =
-      std::count_if(column.words.begin(), column.words.end(),
-                    [](const std::string& word) { return has_word({word}, kNoMotorWords); });
-  // "Motor DC link voltage" is the link's
-  return not_of_motor == 0 || (not_of_motor == 1 && has_word(column.words, kMotorWords));
 }
 
 }  // namespace
@@ -299,7 +303,7 @@ bool is_spool(const ReadColumn& column) {
 
 bool is_drive_set_point(const ReadColumn& column) {
   const std::string& si = column.text.unit.si;
-  return is_reference(column) && (si == "V" || si == "A" || si == "pct") &&
+  return is_reference(column) && (si == "V" || si == "A" || si == "pct") && may_drive(column) &&
          !has_word(column.words, kOtherWords) && !has_word(column.words, kPositionWords);
 }
 
@@ -338,8 +342,9 @@ int fit_of(Role role, const ReadColumn& column) {
     const bool positional = has_word(column.words, kPositionWords);
     if (spool && (positional || measured > 0)) return 0;
     if (positional && !unit.known()) return 0;
+    if (!may_drive(column)) return 0;
     if (has_word(column.words, kCommandWords)) return kStrong;
-    const bool drives = !positional && may_drive(column);
+    const bool drives = !positional && !has_word(column.words, kSensorWords);
     return drives && has_word(column.words, kWeakCommandWords) ? kWeak : 0;
   }
   if (!unit.known() && has_word(column.words, kCommandWords)) return 0;

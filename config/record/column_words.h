@@ -59,6 +59,8 @@ struct ReadColumn {
 [[nodiscard]] bool is_spool(const ReadColumn& column);
 /// True for a set point in a drive's unit, which may be the command: "Set voltage [V]".
 [[nodiscard]] bool is_drive_set_point(const ReadColumn& column);
+/// True where no word speaks of a supply, a brake, a load, a relief valve or a sensor.
+[[nodiscard]] bool may_drive(const ReadColumn& column);
 /// True where a word speaks of a command: a commanded position is no measured one.
 [[nodiscard]] bool is_commanded(const ReadColumn& column);
 /// True where a word speaks of a measurement.

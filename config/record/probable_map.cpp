@@ -95,6 +95,7 @@ int likelihood(Role role, const ReadColumn& column) {
   if (role == Role::command && !column.clock && is_drive_set_point(column)) return 4;
   if (si == "s" || column.clock || !is_plain(column)) return 0;
   if (is_spool(column)) return role == Role::command ? 2 : 0;
+  if (role == Role::command && !may_drive(column)) return 0;
   if (!column.text.unit.known() && increases(*column.sample)) return 1;  // a time, a counter
   const bool right = fits(role, si);
   if (role == Role::position) {

@@ -26,7 +26,6 @@ namespace {
 using record_test::error_of;
 using record_test::read;
 using record_test::TemporaryFile;
-using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -205,8 +204,7 @@ TEST(Roles, ProposeTheAxisOfAnOscilloscopeForTheTimeAndNoColumnTwice) {
   EXPECT_THAT(error_of(text), HasSubstr(proposed));
   for (const char* map : {"t=x-axis", "u=1", "y=2", "u=1[V],y=1[mm]", "t=x-axis[s],u=1[V],y=1[mm]"})
     EXPECT_THAT(error_of(text, map), HasSubstr(proposed)) << map;
-  EXPECT_THAT(error_of("x current;1;2\n4;1;2\n5;1;2\n4;1;2\n"),
-              testing::Not(HasSubstr("y=x current")));
+  EXPECT_THAT(error_of("x current;1;2\n4;1;2\n5;1;2\n4;1;2\n"), Not(HasSubstr("y=x current")));
   // an axis of a machine
   EXPECT_EQ(read("Time [s],Command [V],X-Axis [mm]\n0,1,2\n1,1,3\n2,1,4\n").y_m[2], 4e-3);
 }
@@ -245,35 +243,6 @@ TEST(Roles, TakeNoReferenceForAPositionAndNoPositionForACommand) {
   EXPECT_EQ(record.u_V[0], 2.0);
   EXPECT_THAT(error_of("Time [s],Setpoint [mm],Command [V]\n0,1,2\n1,1,2\n2,1,2\n"),
               HasSubstr("lacks a position column"));
-}
-
-TEST(Words, OfAMotorAreThoseOfADrive) {
-  const std::string rows = "\n0,1,2\n1,2,3\n2,1,2\n";
-  for (const char* command : {"DC motor voltage [V]", "Link motor torque [N m]"}) {
-    EXPECT_EQ(read(std::string("Time [s],") + command + ",Position [mm]" + rows).u_V[1], 2.0);
-  }
-  for (const char* other : {"DC link voltage [V]", "Motor DC link voltage [V]", "Load force [N]"}) {
-    EXPECT_THAT(error_of(std::string("Time [s],") + other + ",Position [mm]" + rows),
-                HasSubstr("lacks a command column"));
-  }
-}
-
-TEST(Words, OfASetPointOfAValveAreItsCommand) {
-  const Record record = read(
-      "Time [s],Valve position [%],Valve position setpoint [%],Position [mm]\n"
-      "0,1,4,2\n1,2,5,3\n2,1,6,2\n");
-  EXPECT_EQ(record.u_V[1], 5.0);
-  EXPECT_EQ(record.y_m[1], 3e-3);
-}
-
-TEST(Proposals, PreferASetPointWithADrivesUnitToNone) {
-  for (const char* command : {"Set voltage [V]", "Virtual input [V]"}) {
-    EXPECT_THAT(error_of(std::string("Time [s],Foo,") + command +
-                         ",Position [mm]\n0,1,4,2\n1,2,5,3\n2,1,6,2\n"),
-                AnyOf(HasSubstr("u=3"),
-                      HasSubstr(std::string("u=") +
-                                std::string(command).substr(0, std::string(command).find(" [")))));
-  }
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+// Which column is the command, by the words of its name: what drives the rod, not what is supplied,
+// loaded, relieved or measured.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "config/record/record.h"
+#include "tests/config/record/csv_text.h"
+
+namespace config::record {
+namespace {
+
+using record_test::error_of;
+using record_test::read;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Three rows with `columns` between time and position.
+std::string with_columns(const std::string& columns) {
+  std::string text = "Time [s]," + columns + ",Position [mm]\n";
+  for (int k = 0; k < 3; ++k) {
+    text += std::to_string(k);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (i == 0 || columns[i] == ',') text += fmt::format(",{}", k + (i == 0 ? 1 : 4));
+    }
+    text += fmt::format(",{}\n", 2 + k % 2);
+  }
+  return text;
+}
+
+TEST(Words, OfAMotorAreThoseOfADrive) {
+  for (const char* command : {"DC motor voltage [V]", "Link motor torque [N m]"}) {
+    EXPECT_EQ(read(with_columns(command)).u_V[1], 2.0) << command;
+  }
+  for (const char* other : {"DC link voltage [V]", "Motor DC link voltage [V]", "Load force [N]",
+                            "DC link voltage motor drive [V]"}) {
+    EXPECT_THAT(error_of(with_columns(other)), HasSubstr("lacks a command column")) << other;
+  }
+}
+
+TEST(Words, OfALoadABusOrABrakeAreNoCommandWhateverStandsBeside) {
+  for (const char* other :
+       {"Motor load torque [Nm]", "Load motor current [A]", "Motor bus voltage [V]",
+        "DC bus voltage motor drive [V]", "Brake valve command [V]", "Load valve setpoint [%]",
+        "Relief valve setpoint [%]", "Brake valve setpoint [%]", "Pressure valve setpoint [%]",
+        "Relief valve current [A]", "Motorlastmoment [Nm]", "Lastmotor Strom [A]"}) {
+    EXPECT_THAT(error_of(with_columns(other)),
+                AllOf(HasSubstr("lacks a command column"), Not(HasSubstr("may be"))))
+        << other;
+    for (const char* command : {"Motor voltage [V]", "Servo voltage [V]"}) {
+      const std::string both = std::string(other) + "," + command;
+      EXPECT_EQ(read(with_columns(both)).u_V[1], 5.0) << both;
+    }
+  }
+}
+
+TEST(Words, OfACommandAreNoLoadByTheirLettersAlone) {
+  for (const char* command : {"Plastic press valve command [V]", "DC command [V]",
+                              "H bridge command [V]", "Excitation command [V]"}) {
+    EXPECT_EQ(read(with_columns(command)).u_V[1], 2.0) << command;
+  }
+}
+
+TEST(Words, OfASetPointOfAValveAreItsCommand) {
+  const Record record = read(
+      "Time [s],Valve position [%],Valve position setpoint [%],Position [mm]\n"
+      "0,1,4,2\n1,2,5,3\n2,1,6,2\n");
+  EXPECT_EQ(record.u_V[1], 5.0);
+  EXPECT_EQ(record.y_m[1], 3e-3);
+}
+
+TEST(Proposals, OfACommandNameNoLoad) {
+  EXPECT_THAT(error_of(with_columns("Load valve command [V],Foo [V]")), HasSubstr("u=Foo"));
+  EXPECT_THAT(error_of(with_columns("Relief valve setpoint [%],Foo [V]")), HasSubstr("u=Foo"));
+  EXPECT_THAT(error_of(with_columns("Motor load torque [Nm]")), HasSubstr("u=COLUMN[UNIT]"));
+}
+
+TEST(Proposals, PreferASetPointWithADrivesUnitToNone) {
+  for (const char* command : {"Set voltage [V]", "Virtual input [V]"}) {
+    EXPECT_THAT(error_of(std::string("Time [s],Foo,") + command +
+                         ",Position [mm]\n0,1,4,2\n1,2,5,3\n2,1,6,2\n"),
+                AnyOf(HasSubstr("u=3"),
+                      HasSubstr(std::string("u=") +
+                                std::string(command).substr(0, std::string(command).find(" [")))));
+  }
+}
+
+}  // namespace
+}  // namespace config::record
