@@ -126,6 +126,8 @@ const Words kValveCommandWords{"u",        "command*",  "cmd",      "kommando*",
                                "ao",       "input",     "eingang*", "stellgr*",   "mando",
                                "comando",  "control",   "output",   "out"};
 
+const Words kAngleWords{"angle*", "winkel*", "theta", "phi", "rotation", "dreh*"};
+
 constexpr int kCanonical = 100;
 constexpr int kStrong = 50;
 constexpr int kWeak = 20;
@@ -308,6 +310,8 @@ bool is_drive_set_point(const ReadColumn& column) {
 }
 
 bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }
+
+bool is_angle(const ReadColumn& column) { return has_word(column.words, kAngleWords); }
 
 bool is_measured(const ReadColumn& column) { return has_word(column.words, kMeasuredWords); }
 

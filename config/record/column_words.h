@@ -63,6 +63,8 @@ struct ReadColumn {
 [[nodiscard]] bool may_drive(const ReadColumn& column);
 /// True where a word speaks of a command: a commanded position is no measured one.
 [[nodiscard]] bool is_commanded(const ReadColumn& column);
+/// True where a word speaks of an angle.
+[[nodiscard]] bool is_angle(const ReadColumn& column);
 /// True where a word speaks of a measurement.
 [[nodiscard]] bool is_measured(const ReadColumn& column);
 

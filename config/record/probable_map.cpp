@@ -126,6 +126,8 @@ std::string probable_unit(Role role, const ReadColumn& column) {
   if (role == Role::command) return "V";
   double most = 0.0;
   for (const double value : sample) most = std::max(most, std::abs(value));
+  constexpr double kTurn_rad = 6.3;
+  if (is_angle(column)) return most > kTurn_rad ? "deg" : "rad";
   return most > 3.0 ? "mm" : "m";
 }
 

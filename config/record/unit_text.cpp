@@ -51,8 +51,8 @@ constexpr std::array kUnits{
     KnownUnit{"ft", "m", 12.0 * kInch_m},
     KnownUnit{"rad|radian|radians", "rad", 1.0},
     KnownUnit{"mrad", "rad", 1e-3},
-    KnownUnit{"deg|degree|degrees|°", "rad", kPi / 180.0},
-    KnownUnit{"rev|revs", "rad", 2.0 * kPi},
+    KnownUnit{"deg|degree|degrees|°|Grad", "rad", kPi / 180.0},
+    KnownUnit{"rev|revs|revolution|revolutions|Umdrehung|Umdrehungen", "rad", 2.0 * kPi},
     KnownUnit{"m/s|mps", "mps", 1.0},
     KnownUnit{"mm/s|mmps", "mps", 1e-3},
     KnownUnit{"cm/s", "mps", 1e-2},
@@ -60,7 +60,7 @@ constexpr std::array kUnits{
     KnownUnit{"m/min", "mps", 1.0 / 60.0},
     KnownUnit{"mm/min", "mps", 1e-3 / 60.0},
     KnownUnit{"rad/s|radps", "radps", 1.0},
-    KnownUnit{"deg/s|°/s", "radps", kPi / 180.0},
+    KnownUnit{"deg/s|°/s|Grad/s", "radps", kPi / 180.0},
     KnownUnit{"rpm|1/min|U/min", "radps", kPi / 30.0},
     KnownUnit{"m/s2|m/s^2|m/s²", "mps2", 1.0},
     KnownUnit{"Pa", "Pa", 1.0},
@@ -125,9 +125,22 @@ bool names_time(std::string_view name) {
   return stem == "t" || stem == "time" || stem == "zeit" || stem == "elapsed";
 }
 
-/// Endings that are words as well: "pressure in", "y_min", "y_h".
+/// "Winkel" and "phi", before the word that may be their unit.
+bool names_angle(std::string_view name) {
+  const std::string stem = folded(name);
+  if (stem == "y" || stem == "phi") return true;
+  constexpr std::array<std::string_view, 7> kWords{"angle", "winkel",   "theta", "position",
+                                                   "lage",  "rotation", "dreh"};
+  return std::any_of(kWords.begin(), kWords.end(),
+                     [&](std::string_view word) { return stem.find(word) != std::string::npos; });
+}
+
+/// Endings that are words as well: "pressure in", "y_min", "y_h", "p_grad", "Motor Umdrehungen".
 bool is_word_too(std::string_view unit, std::string_view name) {
   if (unit == "min" || unit == "h") return !names_time(name);
+  const std::string word = lower(unit);
+  if (word.starts_with("umdrehung") || word.starts_with("revolution")) return true;
+  if (word == "grad") return !names_angle(name);
   if (unit != "in") return false;
   const std::string stem = folded(name);
   for (const std::string_view length : {"y", "x", "pos", "position", "stroke", "displacement"}) {

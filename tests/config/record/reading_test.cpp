@@ -47,6 +47,19 @@ TEST(UnitText, DistinguishesPrefixesByCaseAndWordsByNone) {
   EXPECT_EQ(parse_unit("\xCE\xBCm").factor, 1e-6);  // the Greek letter
 }
 
+TEST(UnitText, OfAnAngleMayBeGerman) {
+  for (const char* header : {"Winkel [Grad]", "Winkel [grad]", "Winkel in Grad", "Winkel Grad",
+                             "phi_grad", "Drehwinkel / Grad"}) {
+    EXPECT_EQ(parse_header(header).unit.factor, parse_unit("deg").factor) << header;
+  }
+  EXPECT_EQ(parse_unit("Grad/s").factor, parse_unit("deg/s").factor);
+  EXPECT_EQ(parse_unit("[Umdrehung]").factor, parse_unit("rev").factor);
+  EXPECT_EQ(parse_unit("Umdrehungen").si, "rad");
+  for (const char* other : {"Pressure_grad", "temp grad", "Motor Umdrehungen"}) {
+    EXPECT_EQ(parse_header(other).name, other);
+  }
+}
+
 TEST(UnitText, FindsTheUnitInAHeader) {
   const auto parts = [](const char* header) {
     const HeaderText text = parse_header(header);
@@ -222,6 +235,14 @@ TEST(Roles, ProposeTheRateThatTheFileStatesAndInventNone) {
   EXPECT_THAT(error_of("X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-1.0e+00,5.0e-03\n"
                        "0,1,10,\n1,2,11,\n2,1,12,\n"),
               HasSubstr("'t=0.005s,u=2[V],y=3[mm]'"));
+}
+
+TEST(Roles, ProposeAUnitOfAnglesForAnAngle) {
+  const std::string names = "Zeit [s],Moment [Nm],";
+  EXPECT_THAT(error_of(names + "Winkel\n0,1,20\n1,1,30\n2,1,20\n"), HasSubstr("y=Winkel[deg]"));
+  EXPECT_THAT(error_of(names + "Winkel\n0,1,0.2\n1,1,0.3\n2,1,0.2\n"), HasSubstr("y=Winkel[rad]"));
+  EXPECT_THAT(error_of(names + "Winkel [Digits]\n0,1,20\n1,1,30\n2,1,20\n"),
+              HasSubstr("y=3*FACTOR[deg]"));
 }
 
 TEST(Roles, TellTheUnitOfATimeSince1970ByItsSize) {
