@@ -16,6 +16,7 @@
 
 #include "config/schema/error.h"
 #include "daemon/control/protocol.h"
+#include "tests/daemon/io/control_socket_fixture.h"
 
 namespace monitor::io {
 namespace {
