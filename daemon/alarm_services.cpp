@@ -34,4 +34,11 @@ void AlarmServices::restore(estimator::fdi::Pipeline& pipeline, std::int64_t utc
   pipeline.alarms().restore(loaded.lives);
 }
 
+void AlarmServices::finish(std::ostream& log) const {
+  const std::int64_t missing = store != nullptr ? store->finish() : 0;
+  if (missing == 0) return;
+  log << "spoolwatchd: " << store->history_file().string() << ": " << missing
+      << " lines could not be written: the statistics lack them" << std::endl;
+}
+
 }  // namespace monitor

@@ -34,6 +34,8 @@ class AlarmServices {
 
   /// Restores the alarm states saved before the restart. Call once all alarms are declared.
   void restore(estimator::fdi::Pipeline& pipeline, std::int64_t utc_us, std::ostream& log) const;
+  /// Writes what is left of the history and reports missing lines. Call after the detector's end.
+  void finish(std::ostream& log) const;
 
   detection::AlarmCommandQueue commands;
   detection::AlarmAnswerQueue answers;

@@ -321,6 +321,7 @@ int Session::report() {
   }
   if (!failure_.empty()) log_ << "spoolwatchd: " << failure_ << std::endl;
   if (alarms_.evidence != nullptr) alarms_.evidence->finish();
+  alarms_.finish(log_);
   const bool complete = recorder_ == nullptr || recorded_all(*recorder_, log_);
   return failure_.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
 }

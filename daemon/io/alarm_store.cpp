@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -25,8 +26,15 @@ constexpr const char* kFormat = "spoolwatch alarms";
 constexpr int kVersion = 1;
 constexpr std::size_t kLargestFile = 16 << 20;
 constexpr std::size_t kMostUnwritten = 10'000;  // lines of the history
-/// Lines written together, synchronised once, so that other jobs of the writer do not wait long.
-constexpr std::size_t kMostAtOnce = 500;
+
+std::string history_line(const std::string& text, std::int64_t utc_us) {
+  return "{\"utc\":\"" + utc_text(utc_us) + "\"," + text + "}\n";
+}
+
+std::int64_t now_utc_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
 
 PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
   PersistedAlarm life;
@@ -117,38 +125,75 @@ AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id,
       rig_id_(std::move(rig_id)),
       writer_(writer),
       history_(std::make_shared<History>(folder / "history.log", history_bytes)) {
-  append("\"event\":\"start\"");
+  append("\"event\":\"start\"", now_utc_us());
 }
 
-AlarmStore::~AlarmStore() { append("\"event\":\"end\""); }
+AlarmStore::~AlarmStore() {
+  if (!ended_) (void)post_end(kLongestEnd, [] {});
+}
 
-void AlarmStore::append(const std::string& line) {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  append(line, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+std::int64_t AlarmStore::finish(std::chrono::milliseconds most_time) {
+  const auto done = std::make_shared<std::promise<void>>();  // outlives its job
+  ended_ = true;
+  if (post_end(most_time, [done] { done->set_value(); })) done->get_future().wait();
+  return history_->file.lost() + static_cast<std::int64_t>(history_->waiting);
+}
+
+bool AlarmStore::post_end(std::chrono::milliseconds most_time, std::function<void()> done) {
+  const bool posted = writer_.post([history = history_, most_time, done = std::move(done),
+                                    line = history_line("\"event\":\"end\"", now_utc_us())] {
+    add(*history, line);
+    write(*history, kMostUnwritten, Clock::now() + most_time);
+    done();
+  });
+  if (!posted) history_->file.lose();
+  return posted;
 }
 
 void AlarmStore::append(const std::string& line, std::int64_t utc_us) {
-  std::string whole = "{\"utc\":\"" + utc_text(utc_us) + "\"," + line + "}\n";
-  const bool posted = writer_.post([history = history_, text = std::move(whole)] {
-    history->unwritten.push_back(text);
-    if (history->unwritten.size() > kMostUnwritten) {
-      history->unwritten.pop_front();
-      history->file.lose();
-    }
+  const bool posted = writer_.post([history = history_, text = history_line(line, utc_us)] {
+    add(*history, text);
     write(*history);
   });
   if (!posted) history_->file.lose();
 }
 
-void AlarmStore::write(History& history) {
-  std::string lines;
-  std::size_t count = 0;
-  for (; count < std::min(kMostAtOnce, history.unwritten.size()); ++count) {
-    lines += history.unwritten[count];
+void AlarmStore::add(History& history, const std::string& line) {
+  history.unwritten.push_back(line);
+  if (history.unwritten.size() > kMostUnwritten) {
+    history.unwritten.pop_front();
+    history.file.lose();
   }
-  if (count > 0 && history.file.try_append(lines)) {
-    history.unwritten.erase(history.unwritten.begin(),
-                            history.unwritten.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+std::size_t AlarmStore::write_some(History& history, std::size_t most) {
+  while (!history.unwritten.empty()) {
+    const std::size_t most_bytes = history.file.room_bytes(history.unwritten.front().size());
+    std::string lines;
+    std::size_t count = 0;
+    for (const std::string& line : history.unwritten) {
+      if (count == std::min(history.at_once, most)) break;
+      if (count > 0 && lines.size() + line.size() > most_bytes) break;
+      lines += line;
+      ++count;
+    }
+    if (history.file.try_append(lines)) {
+      history.unwritten.erase(history.unwritten.begin(),
+                              history.unwritten.begin() + static_cast<std::ptrdiff_t>(count));
+      history.at_once = std::min(2 * history.at_once, kMostAtOnce);
+      return count;
+    }
+    if (count == 1) return 0;
+    history.at_once = count / 2;
+  }
+  return 0;
+}
+
+void AlarmStore::write(History& history, std::size_t most, Clock::time_point until) {
+  for (std::size_t written = 0; written < most && Clock::now() < until;) {
+    const std::size_t count = write_some(history, most - written);
+    if (count == 0) break;
+    written += count;
   }
   history.waiting = history.unwritten.size();
 }

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -47,6 +49,7 @@ class AlarmStore {
   /// `writer` must outlive this object; it also writes what is still queued then.
   AlarmStore(const std::filesystem::path& folder, std::string rig_id, BackgroundWriter& writer,
              std::int64_t history_bytes = 1 << 20);
+  /// Posts what finish() does, without waiting for it.
   ~AlarmStore();
   AlarmStore(const AlarmStore&) = delete;
   AlarmStore& operator=(const AlarmStore&) = delete;
@@ -61,6 +64,9 @@ class AlarmStore {
   void note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us);
   /// Tries once more to write the lines of the history that a full disk kept back. One thread.
   void retry_history();
+  /// Writes the daemon's end and the lines that wait, within about `most_time`. Returns the lines
+  /// that are not in the history. Call last; blocks on the disk.
+  std::int64_t finish(std::chrono::milliseconds most_time = kLongestEnd);
   /// Lines of the history that were given up. Any thread.
   [[nodiscard]] std::int64_t lost_history() const noexcept { return history_->file.lost(); }
   /// Lines of the history that wait for the disk. Any thread.
@@ -69,17 +75,32 @@ class AlarmStore {
   /// errno of the last save, 0 on success. Any thread.
   [[nodiscard]] int error() const noexcept { return *error_; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  [[nodiscard]] const std::filesystem::path& history_file() const noexcept {
+    return history_->file.path();
+  }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  /// Well below the time after which systemd kills a daemon that stops.
+  static constexpr std::chrono::milliseconds kLongestEnd{3000};
+  /// Lines written together, synchronised once, so that other jobs of the writer do not wait long.
+  static constexpr std::size_t kMostAtOnce = 500;
+
   struct History {
     History(const std::filesystem::path& path, std::int64_t most_bytes) : file(path, most_bytes) {}
     CappedFile file;
     std::deque<std::string> unwritten;    ///< the writer's thread alone
+    std::size_t at_once = kMostAtOnce;    ///< fewer lines on a disk that is nearly full; likewise
     std::atomic<std::size_t> waiting{0};  ///< size of `unwritten`
   };
-  static void write(History& history);
-  void append(const std::string& line);
+  /// Writes `most` of the oldest lines together, or as many as the disk takes; returns how many.
+  static std::size_t write_some(History& history, std::size_t most);
+  /// Writes lines until `most` are written, one cannot be, or `until` has passed.
+  static void write(History& history, std::size_t most = kMostAtOnce,
+                    Clock::time_point until = Clock::time_point::max());
+  static void add(History& history, const std::string& line);
   void append(const std::string& line, std::int64_t utc_us);
+  bool post_end(std::chrono::milliseconds most_time, std::function<void()> done);
 
   std::filesystem::path file_;
   std::string rig_id_;
@@ -87,6 +108,7 @@ class AlarmStore {
   std::shared_ptr<History> history_;
   std::map<std::string, std::string> noted_;  ///< newest line of each alarm, without its time
   std::uint64_t saved_ = 0;                   ///< AlarmBook::changes() at the last save
+  bool ended_ = false;
   std::shared_ptr<std::atomic<int>> error_ =
       std::make_shared<std::atomic<int>>(0);  ///< shared with the jobs
 };

@@ -160,7 +160,10 @@ TEST_F(Alarms, ThatCannotBeSavedAreAnAlarmThemselves) {
   EXPECT_TRUE(shows("MINOR    alarms.not_saved")) << order("alarms").out;
   EXPECT_TRUE(shows("MINOR    alarms.audit_lost")) << order("alarms").out;
   EXPECT_TRUE(shows("MINOR    alarms.history_not_saved")) << order("alarms").out;
-  EXPECT_EQ(end().exit_code, 0);
+  const Result result = end();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("history.log: "));
+  EXPECT_THAT(result.err, HasSubstr(" lines could not be written"));
 }
 
 TEST_F(Alarms, HaveEvidenceThatLeadsToThemThoughPeopleActedMeanwhile) {
