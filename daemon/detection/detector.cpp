@@ -222,11 +222,12 @@ void Detector::update_alarm_file_alarms() {
                                std::strerror(error)
                          : "");
     parts_.alarms.store->retry_history();
-    condition("alarms", "history_not_saved", Severity::minor,
-              parts_.alarms.store->waiting_history() > 0,
+    const bool waits = parts_.alarms.store->waiting_history() > 0;
+    condition("alarms", "history_not_saved", Severity::minor, waits,
               "changes of alarms wait until history.log can be written; the statistics lack them");
     const std::int64_t given_up = parts_.alarms.store->lost_history();
-    condition("alarms", "history_lost", Severity::minor, given_up > history_lost_before_,
+    history_losing_ = given_up > history_lost_before_ || (history_losing_ && waits);
+    condition(io::kHistoryLost[0], io::kHistoryLost[1], Severity::minor, history_losing_,
               "changes of alarms could not be written to history.log");
     history_lost_before_ = given_up;
   }

@@ -113,6 +113,7 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
   std::int64_t dropped_before_ = 0;
   std::int64_t audit_lost_before_ = 0;
   std::int64_t history_lost_before_ = 0;
+  bool history_losing_ = false;  ///< lines were lost since the last time that none waited
 };
 
 }  // namespace monitor::detection

@@ -150,19 +150,19 @@ bool AlarmStore::post_end(std::chrono::milliseconds most_time, std::function<voi
   return posted;
 }
 
-void AlarmStore::append(const std::string& line, std::int64_t utc_us) {
-  const bool posted = writer_.post([history = history_, text = history_line(line, utc_us)] {
-    add(*history, text);
+void AlarmStore::append(const std::string& line, std::int64_t utc_us, bool counts) {
+  const bool posted = writer_.post([history = history_, counts, text = history_line(line, utc_us)] {
+    add(*history, text, counts);
     write(*history);
   });
-  if (!posted) history_->file.lose();
+  if (!posted && counts) history_->file.lose();
 }
 
-void AlarmStore::add(History& history, const std::string& line) {
+void AlarmStore::add(History& history, const std::string& line, bool counts) {
   history.unwritten.push_back(line);
   if (history.unwritten.size() > kMostUnwritten) {
     history.unwritten.pop_front();
-    history.file.lose();
+    if (counts) history.file.lose();
   }
 }
 
@@ -213,7 +213,7 @@ void AlarmStore::note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) {
   std::string& noted = noted_[alarm.source + "." + alarm.name];
   if (noted == text) return;
   noted = text;
-  append(text, utc_us);
+  append(text, utc_us, alarm.source != kHistoryLost[0] || alarm.name != kHistoryLost[1]);
 }
 
 LoadedLives AlarmStore::load(std::int64_t utc_us) const {

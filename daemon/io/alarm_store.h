@@ -23,6 +23,9 @@
 
 namespace monitor::io {
 
+/// Source and name of the alarm on lines of the history that were given up.
+inline constexpr const char* kHistoryLost[] = {"alarms", "history_lost"};
+
 /// TOML [alarms].
 struct AlarmConfig {
   std::string folder;  ///< folder for alarms.json, audit.log, ...; empty: no files
@@ -67,7 +70,8 @@ class AlarmStore {
   /// Writes the daemon's end and the lines that wait, within about `most_time`. Returns the lines
   /// that are not in the history. Call last; blocks on the disk.
   std::int64_t finish(std::chrono::milliseconds most_time = kLongestEnd);
-  /// Lines of the history that were given up. Any thread.
+  /// Lines of the history that were given up, without those of kHistoryLost: the alarm on this
+  /// number must not raise itself. Any thread.
   [[nodiscard]] std::int64_t lost_history() const noexcept { return history_->file.lost(); }
   /// Lines of the history that wait for the disk. Any thread.
   [[nodiscard]] std::size_t waiting_history() const noexcept { return history_->waiting; }
@@ -98,8 +102,9 @@ class AlarmStore {
   /// Writes lines until `most` are written, one cannot be, or `until` has passed.
   static void write(History& history, std::size_t most = kMostAtOnce,
                     Clock::time_point until = Clock::time_point::max());
-  static void add(History& history, const std::string& line);
-  void append(const std::string& line, std::int64_t utc_us);
+  /// `counts`: a line that is given up for this one, or this one itself, is a lost one.
+  static void add(History& history, const std::string& line, bool counts = true);
+  void append(const std::string& line, std::int64_t utc_us, bool counts = true);
   bool post_end(std::chrono::milliseconds most_time, std::function<void()> done);
 
   std::filesystem::path file_;
