@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -109,11 +108,8 @@ class PromotionAttempt {
   }
   void learn() {
     std::vector<std::string> quantities;
-    for (const fdi::BandConfig& band : daemon_.rules().bands) {
-      const bool open = std::isinf(band.low) && std::isinf(band.high);
-      if (open && fdi::split_quantity(band.quantity).source != fdi::kSampleSource) {
-        quantities.push_back(band.quantity);
-      }
+    for (const fdi::BandConfig& band : promotion::bands_to_learn(daemon_.rules())) {
+      quantities.push_back(band.quantity);
     }
     std::sort(quantities.begin(), quantities.end());
     quantities.erase(std::unique(quantities.begin(), quantities.end()), quantities.end());

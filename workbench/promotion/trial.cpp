@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <map>
 
 #include "config/schema/error.h"
+#include "estimator/fdi/quantity.h"
 #include "estimator/greybox/validation/comparison.h"
-#include "workbench/replay/backtest_runs.h"
 
 namespace workbench::promotion {
 
+namespace fdi = estimator::fdi;
 namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
 namespace {
@@ -32,19 +33,6 @@ replay::BacktestRules rules_with(const RunningDaemon& daemon, const fs::path& ba
   rules.pipeline = daemon.rules();
   rules.pipeline.bands_file = fs::absolute(bands).string();
   return rules;
-}
-
-/// True where an estimate was INVALID for more than half of the log: it has not been judged.
-bool is_mostly_invalid(const replay::BacktestRun& run) {
-  std::map<std::string, double> invalid_s;
-  for (const replay::Occurrence& each : run.after) {
-    if (!std::isnan(each.limit_s)) continue;
-    const double end_s = std::isnan(each.to_s) ? run.to_s : each.to_s;
-    invalid_s[each.alarm] += end_s - each.from_s;
-  }
-  const double most_s = 0.5 * (run.to_s - run.from_s);
-  return std::any_of(invalid_s.begin(), invalid_s.end(),
-                     [&](const auto& one) { return one.second > most_s; });
 }
 
 }  // namespace
@@ -97,6 +85,30 @@ std::vector<std::string> new_alarms(const RunningDaemon& daemon, const fs::path&
   return found;
 }
 
+std::vector<fdi::BandConfig> bands_to_learn(const fdi::PipelineConfig& rules) {
+  std::vector<fdi::BandConfig> bands;
+  std::copy_if(rules.bands.begin(), rules.bands.end(), std::back_inserter(bands),
+               [](const fdi::BandConfig& band) {
+                 return std::isinf(band.low) && std::isinf(band.high) &&
+                        fdi::split_quantity(band.quantity).source != fdi::kSampleSource;
+               });
+  return bands;
+}
+
+bool has_judged(const replay::BacktestRun& run, const std::vector<fdi::BandConfig>& bands) {
+  const double most_s = 0.5 * (run.to_s - run.from_s);
+  return std::none_of(bands.begin(), bands.end(), [&](const fdi::BandConfig& band) {
+    const std::string alarm =
+        std::string(fdi::split_quantity(band.quantity).source) + "." + band.id;
+    double invalid_s = 0.0;
+    for (const replay::Occurrence& each : run.after) {
+      if (each.alarm != alarm || !std::isnan(each.limit_s)) continue;
+      invalid_s += (std::isnan(each.to_s) ? run.to_s : each.to_s) - each.from_s;
+    }
+    return invalid_s > most_s;
+  });
+}
+
 std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
   std::vector<fs::path> logs;
   std::error_code ignored;
@@ -113,7 +125,8 @@ std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
       const auto runs = replay::run_backtest(rules_with(daemon, daemon.bands_file()), std::nullopt,
                                              {log.string()});
       if (replay::passed_limits(runs.front().after).empty() &&
-          replay::passed_limits(runs.front().before).empty() && !is_mostly_invalid(runs.front())) {
+          replay::passed_limits(runs.front().before).empty() &&
+          has_judged(runs.front(), bands_to_learn(daemon.rules()))) {
         healthy.push_back(log.string());
       }
     } catch (const DataError&) {  // a log that cannot be replayed is no healthy one

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "config/record/record.h"
-#include "estimator/fdi/learned_bands.h"
+#include "estimator/fdi/band.h"
+#include "estimator/fdi/pipeline.h"
 #include "plant_sim/model_file.h"
 #include "workbench/promotion/running_daemon.h"
+#include "workbench/replay/backtest_runs.h"
 
 namespace workbench::promotion {
 
@@ -33,8 +35,16 @@ struct ModelTrial {
                                                   const std::filesystem::path& bands,
                                                   const std::vector<std::string>& files);
 
-/// The newest logs of the daemon's recorder in which its rules find no limit passed. Throws
-/// config::schema::RunError when there is none.
+/// Bands on estimates, without limits of their own: a promotion learns theirs.
+[[nodiscard]] std::vector<estimator::fdi::BandConfig> bands_to_learn(
+    const estimator::fdi::PipelineConfig& rules);
+
+/// False where the estimate of one of `bands` was INVALID for more than half of the run.
+[[nodiscard]] bool has_judged(const replay::BacktestRun& run,
+                              const std::vector<estimator::fdi::BandConfig>& bands);
+
+/// The newest logs of the daemon's recorder in which its rules find no limit passed and the
+/// estimates of bands_to_learn() are valid. Throws config::schema::RunError when there is none.
 [[nodiscard]] std::vector<std::string> healthy_logs(const RunningDaemon& daemon);
 
 }  // namespace workbench::promotion
