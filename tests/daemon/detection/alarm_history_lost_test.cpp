@@ -31,10 +31,13 @@ estimator::fdi::PipelineConfig far_out() {
   return config;
 }
 
+/// A folder with a directory in the way of the history, as a full disk is.
+struct FullFolder : program::Folder {
+  FullFolder() { filesystem::create_directory(path() / "history.log"); }
+};
+
 class AlarmHistoryLost : public testing::Test {
  protected:
-  AlarmHistoryLost() { filesystem::create_directory(history()); }  // in the way, as a full disk is
-
   [[nodiscard]] filesystem::path history() const { return folder_.path() / "history.log"; }
   void sample(double y_m) {
     config::signals::Sample sample;
@@ -69,7 +72,7 @@ class AlarmHistoryLost : public testing::Test {
     return &pipeline_.alarms().alarm(number);
   }
 
-  program::Folder folder_;
+  FullFolder folder_;
   io::BackgroundWriter writer_;
   io::AlarmStore store_{folder_.path(), "rig", writer_};
   rt::VirtualClock clock_;
@@ -117,8 +120,15 @@ TEST_F(AlarmHistoryLost, StandsFromTheFirstLossUntilTheRestIsWritten) {
 
 /// Where the writer takes no more jobs, nothing waits and each change is lost at once.
 TEST_F(AlarmHistoryLost, GoesThoughItsOwnGoingIsLost) {
+  filesystem::remove(history());
+  change(2);  // writes what has waited: only the writer's queue is full
   std::promise<void> go_on;
-  writer_.post([held = go_on.get_future().share()] { held.wait(); });
+  std::promise<void> begun;  // until then the job itself takes a place of the queue
+  writer_.post([&begun, held = go_on.get_future().share()] {
+    begun.set_value();
+    held.wait();
+  });
+  begun.get_future().wait();
   while (writer_.post([] {})) {
   }
   change(2);
