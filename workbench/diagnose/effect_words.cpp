@@ -8,6 +8,9 @@
 namespace workbench::diagnose {
 namespace {
 
+/// Standard error over the value above which a number but an effect's first stays in the table.
+constexpr double kMostError = 0.5;
+
 /// ": 34.02 +- 0.03 Hz, damping 3.0 +- 0.1 %: a second mass behind a spring (...)".
 std::string second_mass_words(const selection::Diagnosis& diagnosis) {
   using config::units::quantity;
@@ -44,6 +47,7 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
   std::string text;
   for (const selection::ParameterValue& p : diagnosis.parameters) {
     if (p.name.rfind(effect + ".", 0) != 0) continue;
+    if (!text.empty() && p.std_error > kMostError * std::abs(p.value)) continue;
     text += (text.empty() ? ": " : ", ") + config::units::parameter_words(p.name) + " " +
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");
