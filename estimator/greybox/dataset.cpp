@@ -105,7 +105,7 @@ double Dataset::observer_gain(std::size_t k, double observer_per_s) const noexce
 ObserverGain Dataset::observer_gain(std::size_t k, double observer_per_s,
                                     PlantStart start) const noexcept {
   const bool settles = k < initialising.size() && initialising[k] != kNotInitialising;
-  const bool follows = observer_per_s > 0.0 || (settles && initialising[k] > kFromRest);
+  const bool follows = observer_per_s > 0.0 || (settles && initialising[k] == kInitialising);
   if (start == PlantStart::held_by_oil || !settles || !follows) {
     return {observer_gain(k, observer_per_s), 0.0};
   }

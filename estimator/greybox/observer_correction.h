@@ -33,7 +33,7 @@ class ObserverCorrection {
 
   /// True while the speed follows the readings too.
   [[nodiscard]] bool finds_speed(std::size_t k) const noexcept {
-    return speed_ && record_.initialising[k] != kNotInitialising && gain(k).speed_per_s > 0.0;
+    return gain(k).speed_per_s > 0.0;
   }
 
   /// Corrects every lane by its error at sample k, measured less modelled position.
