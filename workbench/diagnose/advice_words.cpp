@@ -103,11 +103,6 @@ const char* of(const auto& words, const std::string& key) {
   return "";
 }
 
-bool has_site(const std::string& plant, const std::string& site) {
-  const plant_sim::PlantInfo& info = *plant_sim::find_plant(plant);
-  return std::find(info.sites.begin(), info.sites.end(), site) != info.sites.end();
-}
-
 /// Site of a formula that has the variable; empty where none of the plant's does.
 std::string formula_words(const selection::Localisation& where, const std::string& plant) {
   std::string site;
@@ -135,6 +130,12 @@ std::string formula_words(const selection::Localisation& where, const std::strin
 }
 
 }  // namespace
+
+bool has_site(const std::string& plant, const std::string& site) {
+  const plant_sim::PlantInfo* info = plant_sim::find_plant(plant);
+  return info != nullptr &&
+         std::find(info->sites.begin(), info->sites.end(), site) != info->sites.end();
+}
 
 std::string motion_words(const monitor::control::ReferenceConfig& reference, double duration_s) {
   std::string text;
@@ -190,9 +191,8 @@ std::string words_to_excite(const std::string& motion) {
 }
 
 std::string words_for_leaps() {
-  return "Leave out the samples that leap out of the motion (in the note below) and diagnose "
-         "again: "
-         "they alone leave an error that no model explains.";
+  return "Mend the samples that leap out of the motion, or leave them out with --ignore, and "
+         "diagnose again: they leave an error that no model explains.";
 }
 
 std::string words_for_doubt() {

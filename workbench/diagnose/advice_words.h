@@ -12,6 +12,9 @@ namespace workbench::diagnose {
 
 namespace selection = estimator::greybox::selection;
 
+/// True where effects may enter there, on a plant of that name.
+[[nodiscard]] bool has_site(const std::string& plant, const std::string& site);
+
 /// "a multisine of 0.1 to 1.9 Hz within 38 mm of 305 mm for 30 s".
 [[nodiscard]] std::string motion_words(const monitor::control::ReferenceConfig& reference,
                                        double duration_s);

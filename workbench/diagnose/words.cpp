@@ -9,6 +9,7 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
+#include "workbench/diagnose/advice_words.h"
 #include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/disturbance_words.h"
 #include "workbench/diagnose/effect_words.h"
@@ -78,6 +79,11 @@ std::string unexplained_words(const selection::Diagnosis& d) {
     return "Not decided: " +
            (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
            rest + ".";
+  }
+  if (d.checks && d.checks->misread()) {
+    return "Unexplained: " + rest +
+           ". What is missing was not sought: read the record as it says "
+           "below first.";
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {
@@ -206,8 +212,9 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
          names.end();
 }
 
-std::string where_words(const selection::Localisation& where) {
-  const std::string enters = where.site == "flow"    ? "as a flow"
+std::string where_words(const selection::Localisation& where, const std::string& plant) {
+  const std::string enters = where.site == "flow"
+                                 ? has_site(plant, "opening") ? "as a flow" : "as a speed"
                              : where.site == "force" ? "as a force"
                              : where.site == "gain"  ? "as a change of the gain"
                                                      : "as an error of the measurement";
@@ -312,9 +319,11 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
              : "The error without " +
                    std::string(d.missing.size() > 1 ? "these effects" : "this effect") +
                    " enters ") +
-        where_words(d.where[0]) + " (" + percent(d.where[0].explained_ratio) + " of its square)";
+        where_words(d.where[0], d.better.plant) + " (" + percent(d.where[0].explained_ratio) +
+        " of its square)";
     if (d.where.size() > 1) {
-      text += ", or " + where_words(d.where[1]) + " (" + percent(d.where[1].explained_ratio) + ")";
+      text += ", or " + where_words(d.where[1], d.better.plant) + " (" +
+              percent(d.where[1].explained_ratio) + ")";
     }
     out.push_back(text + ".");
   }
