@@ -290,6 +290,10 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       innovations.physics_missing() ||
       (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
                                                   result.disturbance, result.rms_after_m));
+  // friction and play let less of it through than their linearised models do
+  if (result.disturbance) {
+    result.disturbance->rms_m = std::min(result.disturbance->rms_m, result.rms_after_m);
+  }
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;

@@ -144,6 +144,18 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;
 }
 
+/// True where a number of an effect in the unit of its size is at the greatest that it can be:
+/// friction that holds 30 times what the rig can push stands for something else.
+bool is_beyond_sense(const Diagnosis& diagnosis, const std::string& effect) {
+  const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
+  const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
+  if (size == diagnosis.parameters.end()) return false;
+  const std::string unit = config::units::unit_of(size->name);
+  return std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
+    return is_own(p) && config::units::unit_of(p.name) == unit && p.at_bound && p.value != 0.0;
+  });
+}
+
 struct Chance {
   double p_value = std::nan("");        ///< that what the effect gained is chance; NaN: not known
   double p_best_of_all = std::nan("");  ///< that the best of all that were tried gains as much
@@ -247,6 +259,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
     if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
+    if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
     if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
       doubt = Doubt::chance;

@@ -74,6 +74,10 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   }
   drop_idle_refinements(result.final);
   result.better = with_values(context.problem.model, result.final);
+  // the best so far may be that of a fit which had only begun
+  if (context.cancelled() && stage.fitted.validation_rms_m > result.search.nominal_rms_m) {
+    result.better = context.problem.model;
+  }
   const Eigen::VectorXd& weights = context.problem.data.final_weights();
   const double observer_per_s = with_observer ? kObserver_per_s : 0.0;
   report_parameters(context, std_errors(context.problem.data, weights, result.final), weights,
