@@ -127,8 +127,10 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
   if (found.verdict == selection::Verdict::not_excited) {
     result.advice = advice_to_excite(problem);
   } else if (found.verdict == selection::Verdict::unexplained && !found.search.interrupted) {
-    result.advice = leaps(problem) ? words_for_leaps()
-                                   : advice_for_unexplained(found.where, problem.model.plant);
+    const bool misread = found.checks && found.checks->misread();
+    result.advice = misread          ? ""
+                    : leaps(problem) ? words_for_leaps()
+                                     : advice_for_unexplained(found.where, problem.model.plant);
   } else if (found.verdict == selection::Verdict::changing) {
     result.advice = words_for_changes(found.changing);
   } else if (found.verdict == selection::Verdict::undetermined && found.ambiguous.empty()) {

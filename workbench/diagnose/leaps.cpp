@@ -16,8 +16,9 @@ namespace greybox = estimator::greybox;
 
 namespace {
 
-/// Most of the record's length that may be left out with the gaps.
-constexpr double kMostLost = 0.2;
+/// Most of the record's length that the gaps may take, the whole of them and at worst.
+constexpr double kMostLost = 0.5;
+constexpr double kBesides_s = 1.0;
 
 /// Length that a gap costs: its segment settles anew, and may be too short to keep.
 constexpr double kGap_s = greybox::kSettling_s + greybox::kShortest_s;
@@ -28,7 +29,8 @@ greybox::Dataset dataset_without_leaps(const config::record::Record& record) {
   greybox::Dataset data = greybox::dataset_of(record);
   const std::vector<greybox::SampleRange> leaps = greybox::reading_faults(data).leaps;
   const double length_s = static_cast<double>(data.size()) * data.sample_time_s;
-  if (leaps.empty() || static_cast<double>(leaps.size()) * kGap_s > kMostLost * length_s) {
+  if (leaps.empty() ||
+      static_cast<double>(leaps.size()) * kGap_s > kMostLost * (length_s - kBesides_s)) {
     return data;
   }
   std::vector<char> ignored(record.size(), 0);

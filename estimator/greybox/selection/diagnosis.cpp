@@ -284,7 +284,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
   ModelStage likeliest;
-  const bool wrong_record = result.checks && result.checks->turned_sign();
+  const bool wrong_record = result.checks && result.checks->misread();
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
     conclude(context, search, result);

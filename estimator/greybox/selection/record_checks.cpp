@@ -16,6 +16,8 @@
 namespace estimator::greybox::selection {
 namespace {
 
+/// Share of the given model's error from which on a fit has not made up for a scale.
+constexpr double kNotMadeUp = 0.5;
 /// A turned sign must explain the record that much better than the sign as given.
 constexpr double kTurned = 3.0;
 
@@ -138,7 +140,13 @@ StrokeOverrun stroke_excess(plant_sim::ModelFile model, const FitDataset& data) 
   return excess;
 }
 
-MotionRatio motion_of(const plant_sim::ModelFile& model, const Dataset& record) {
+/// The measured motion against that of the model as given, and the error of this.
+struct GivenMotion {
+  MotionRatio ratio;
+  double rms_m = 0.0;
+};
+
+GivenMotion motion_of(const plant_sim::ModelFile& model, const Dataset& record) {
   Dataset all = record;
   all.innovations = nullptr;
   std::fill(all.valid.begin(), all.valid.end(), char{1});
@@ -146,7 +154,8 @@ MotionRatio motion_of(const plant_sim::ModelFile& model, const Dataset& record) 
   Eigen::MatrixXd residual_m;
   run.residuals(Eigen::MatrixXd(0, 1), residual_m);
   const std::vector<double> error_m(residual_m.data(), residual_m.data() + residual_m.rows());
-  return motion_ratio(record, error_m, kObserver_per_s);
+  return {motion_ratio(record, error_m, kObserver_per_s),
+          residual_m.norm() / std::sqrt(static_cast<double>(residual_m.rows()))};
 }
 
 }  // namespace
@@ -167,7 +176,10 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
     checks.responses.push_back(
         command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
   }
-  checks.motion = motion_of(model, data.records.front());
+  const GivenMotion given = motion_of(model, data.records.front());
+  checks.motion = given.ratio;
+  checks.wrong_scale =
+      scale_error(given.ratio) != ScaleError::none && rms_m > kNotMadeUp * given.rms_m;
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
                                   [](const CommandResponse& r) { return r.with_command(); });
   if (driven) return checks;

@@ -46,6 +46,17 @@ TEST(RecordChecks, APositionOutsideTheStrokeIsNoticed) {
   EXPECT_FALSE(checked(record()).outside_stroke());
 }
 
+TEST(RecordChecks, AThousandthOfTheMotionThatNoFitMakesUpForIsNoticed) {
+  Dataset small = record();
+  const double begin_m = small.y_m.front();
+  for (double& y_m : small.y_m) y_m = begin_m + 1e-3 * (y_m - begin_m);
+  const SearchContext context = context_with(std::move(small));
+  constexpr double kNotMadeUp_m = 1.0;
+  EXPECT_TRUE(check_records(context, kNotMadeUp_m).wrong_scale);
+  EXPECT_FALSE(check_records(context, 1e-9).wrong_scale);
+  EXPECT_FALSE(checked(record()).misread());
+}
+
 /// Rod side over cap side of a fitted hydraulic_cylinder, whose cap side is the model file's area.
 double rod_side_ratio(const PlantFit& cylinder) {
   const auto area = std::find_if(cylinder.values.begin(), cylinder.values.end(),
