@@ -32,9 +32,7 @@ class ObserverCorrection {
   }
 
   /// True while the speed follows the readings too.
-  [[nodiscard]] bool finds_speed(std::size_t k) const noexcept {
-    return gain(k).speed_per_s > 0.0;
-  }
+  [[nodiscard]] bool finds_speed(std::size_t k) const noexcept { return gain(k).speed_per_s > 0.0; }
 
   /// Corrects every lane by its error at sample k, measured less modelled position.
   void apply(Ensemble& ensemble, std::size_t k, const Ensemble::Values& error_m) const {

@@ -16,7 +16,7 @@ constexpr double kLeapInTurns = 20;  ///< usual largest distances from the media
 constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
 /// Share of the samples that are usual: a leap makes two steps.
 constexpr double kUsual = 0.97;
-constexpr double kTravel = 0.02;     ///< least travel over the usual range
+constexpr double kTravel = 0.02;  ///< least travel over the usual range
 constexpr double kResolutions = 3.0;
 constexpr double kCorrelation = 0.4;
 constexpr std::size_t kFewestSamples = 3;
@@ -53,8 +53,8 @@ std::vector<double> turns_of(const Dataset& record) {
 /// The greatest of those that are usual.
 double usual_m(std::vector<double> values_m) {
   if (values_m.empty()) return 0.0;
-  const auto at = values_m.begin() + static_cast<std::ptrdiff_t>(
-                                         kUsual * static_cast<double>(values_m.size() - 1));
+  const auto at = values_m.begin() +
+                  static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(values_m.size() - 1));
   std::nth_element(values_m.begin(), at, values_m.end());
   return *at;
 }
@@ -110,8 +110,8 @@ ValueRange ends_of(const Dataset& record, const std::vector<SampleRange>& leaps)
 
 std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
   const std::vector<double> turns_m = turns_of(record);
-  const double far_m = std::max({kLeap * range_m, kLeapInSteps * usual_m(steps_of(record)),
-                                 kLeapInTurns * usual_m(turns_m)});
+  const double far_m = std::max(
+      {kLeap * range_m, kLeapInSteps * usual_m(steps_of(record)), kLeapInTurns * usual_m(turns_m)});
   std::vector<SampleRange> leaps;
   std::size_t samples = 0;
   for (const SampleRange& span : segments(record)) {
