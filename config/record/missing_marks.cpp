@@ -19,9 +19,9 @@ bool is_mark(double value, double m_per_unit) {
 }  // namespace
 
 std::vector<std::size_t> find_missing_marks(const std::vector<double>& values, double m_per_unit) {
-  constexpr double kFarOff = 0.1;  // the greatest of the others, in marks
+  constexpr double kFarOff = 0.1;  // greatest magnitude that is no mark, in marks
   std::vector<std::size_t> marks;
-  double greatest = -1.0;  // of the others; negative: there are none
+  double greatest = -1.0;  // magnitude that is no mark; negative: there is none
   for (std::size_t row = 0; row < values.size(); ++row) {
     if (is_mark(values[row], m_per_unit)) {
       marks.push_back(row);

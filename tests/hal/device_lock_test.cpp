@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstddef>
 
 #include "config/schema/error.h"
+#include "tests/forked_child.h"
 
 namespace hal {
 namespace {
@@ -28,46 +28,37 @@ std::string refusal(const std::string& name) {
 }
 
 /// Another user who has taken the device's names, until this object ends.
-class Stranger {
+class Stranger : public tests::ForkedChild {
  public:
-  explicit Stranger(const std::string& name) {
-    int ready[2];
-    EXPECT_EQ(pipe(ready), 0);
-    EXPECT_EQ(pipe(end_), 0);
-    child_ = fork();
-    char byte = 0;
-    if (child_ == 0) {
-      close(end_[1]);
-      bool good = setgid(65534) == 0 && setuid(65534) == 0;
-      for (const std::string& taken : {"spoolwatch/" + name, "spoolwatch/" + name + "/1"}) {
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        const std::size_t n = taken.copy(address.sun_path + 1, sizeof address.sun_path - 1);
-        const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + n);
-        const int file = socket(AF_UNIX, SOCK_STREAM, 0);
-        good = good && bind(file, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-               listen(file, 1) == 0;
-      }
-      (void)!write(ready[1], good ? "g" : "b", 1);
-      (void)!read(end_[0], &byte, 1);
-      _exit(0);
-    }
-    EXPECT_EQ(read(ready[0], &byte, 1), 1);
-    EXPECT_EQ(byte, 'g');
-    close(ready[0]);
-    close(ready[1]);
-  }
-  ~Stranger() {
-    close(end_[0]);
-    close(end_[1]);
-    waitpid(child_, nullptr, 0);
-  }
-  Stranger(const Stranger&) = delete;
-  Stranger& operator=(const Stranger&) = delete;
+  explicit Stranger(const std::string& name) : Stranger(name, Ready()) {}
 
  private:
-  int end_[2];
-  pid_t child_;
+  struct Ready {
+    int ends[2] = {-1, -1};
+    Ready() { EXPECT_EQ(pipe(ends), 0); }
+  };
+  Stranger(const std::string& name, const Ready& ready)
+      : ForkedChild([&](int end) {
+          bool good = setgid(65534) == 0 && setuid(65534) == 0;
+          for (const std::string& taken : {"spoolwatch/" + name, "spoolwatch/" + name + "/1"}) {
+            sockaddr_un address{};
+            address.sun_family = AF_UNIX;
+            const std::size_t n = taken.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+            const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + n);
+            const int file = socket(AF_UNIX, SOCK_STREAM, 0);
+            good = good && bind(file, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                   listen(file, 1) == 0;
+          }
+          char byte = good ? 'g' : 'b';
+          (void)!write(ready.ends[1], &byte, 1);
+          (void)!read(end, &byte, 1);
+        }) {
+    char byte = 0;
+    EXPECT_EQ(read(ready.ends[0], &byte, 1), 1);
+    EXPECT_EQ(byte, 'g');
+    close(ready.ends[0]);
+    close(ready.ends[1]);
+  }
 };
 
 TEST(DeviceLock, IsOneForADeviceAndFreeAgainAfterItsHolder) {

@@ -9,18 +9,16 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
-#include "workbench/diagnose/advice_words.h"
 #include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/disturbance_words.h"
 #include "workbench/diagnose/effect_words.h"
+#include "workbench/diagnose/place_words.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/present/dynamics_plots.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
 namespace {
-
-std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
 
 /// Name of the error that no model of the command can beat.
 std::string floor_name(const selection::Diagnosis& d) {
@@ -212,19 +210,6 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
          names.end();
 }
 
-std::string where_words(const selection::Localisation& where, const std::string& plant) {
-  const std::string enters = where.site == "flow"
-                                 ? has_site(plant, "opening") ? "as a flow" : "as a speed"
-                             : where.site == "force" ? "as a force"
-                             : where.site == "gain"  ? "as a change of the gain"
-                                                     : "as an error of the measurement";
-  const std::string variable = where.variable == "y"   ? "the position y"
-                               : where.variable == "v" ? "the velocity v"
-                               : where.variable == "u" ? "the command u"
-                                                       : "the " + where.variable;
-  return enters + " that goes with " + variable;
-}
-
 /// Parameters that the record has moved far from what the file says of them.
 void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   constexpr double kFar_sds = 2.5;
@@ -310,23 +295,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   add_rivals(d, out);
   const std::string held = held_words(outcome);
   if (!held.empty()) out.push_back(held);
-  if (!d.where.empty()) {
-    std::string text =
-        (!d.where_is_whole || (d.missing.empty() && d.changing.empty())
-             ? "The remaining error enters "
-         : d.missing.empty()
-             ? "The error of the model without change enters "
-             : "The error without " +
-                   std::string(d.missing.size() > 1 ? "these effects" : "this effect") +
-                   " enters ") +
-        where_words(d.where[0], d.better.plant) + " (" + percent(d.where[0].explained_ratio) +
-        " of its square)";
-    if (d.where.size() > 1) {
-      text += ", or " + where_words(d.where[1], d.better.plant) + " (" +
-              percent(d.where[1].explained_ratio) + ")";
-    }
-    out.push_back(text + ".");
-  }
+  if (!d.where.empty()) out.push_back(place_words(d));
   if (std::isfinite(outcome.free_run_before_m)) {
     out.push_back("The free run from the first sample is off by " +
                   config::units::length_words(outcome.free_run_before_m) +

@@ -35,8 +35,4 @@ struct StepWords {
 /// True when a parameter belongs to an effect that was found missing.
 [[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
 
-/// "as a force that goes with the speed". `plant`: its name; without a valve nothing flows.
-[[nodiscard]] std::string where_words(const selection::Localisation& where,
-                                      const std::string& plant);
-
 }  // namespace workbench::diagnose

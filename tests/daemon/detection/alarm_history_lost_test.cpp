@@ -62,7 +62,7 @@ class AlarmHistoryLost : public testing::Test {
   }
   void process() {
     detector_.poll();
-    // of what the detector has posted; outlives its job
+    // the promise outlives the job that keeps it, the last of those that the detector has posted
     const auto done = std::make_shared<std::promise<void>>();
     if (writer_.post([done] { done->set_value(); })) done->get_future().wait();
   }

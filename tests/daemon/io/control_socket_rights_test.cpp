@@ -4,7 +4,6 @@
 #include <grp.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +11,7 @@
 
 #include "daemon/control/protocol.h"
 #include "tests/daemon/io/control_socket_fixture.h"
+#include "tests/forked_child.h"
 
 namespace monitor::io {
 namespace {
@@ -19,37 +19,22 @@ namespace {
 using ControlSocketRightsTest = ControlSocketTest;
 
 /// Connects as another user, in a group or not, sends a line, and stays until told.
-class OtherUser {
+class OtherUser : public tests::ForkedChild {
  public:
-  OtherUser(const std::string& path, gid_t main_group, gid_t further_group) {
-    EXPECT_EQ(::pipe(end_), 0);
-    child_ = ::fork();
-    if (child_ != 0) return;
-    const gid_t groups[] = {further_group};
-    const int file = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path.copy(address.sun_path, sizeof address.sun_path - 1);
-    const bool ready = ::setgroups(1, groups) == 0 && ::setgid(main_group) == 0 &&
-                       ::setuid(65534) == 0 &&
-                       ::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
-    if (ready) (void)!::write(file, "line\n", 5);
-    char byte = 0;
-    ::close(end_[1]);
-    (void)!::read(end_[0], &byte, 1);
-    ::_exit(0);
-  }
-  ~OtherUser() {
-    ::close(end_[0]);
-    ::close(end_[1]);
-    ::waitpid(child_, nullptr, 0);
-  }
-  OtherUser(const OtherUser&) = delete;
-  OtherUser& operator=(const OtherUser&) = delete;
-
- private:
-  int end_[2];
-  pid_t child_;
+  OtherUser(const std::string& path, gid_t main_group, gid_t further_group)
+      : ForkedChild([&](int end) {
+          const gid_t groups[] = {further_group};
+          const int file = ::socket(AF_UNIX, SOCK_STREAM, 0);
+          sockaddr_un address{};
+          address.sun_family = AF_UNIX;
+          path.copy(address.sun_path, sizeof address.sun_path - 1);
+          const bool ready =
+              ::setgroups(1, groups) == 0 && ::setgid(main_group) == 0 && ::setuid(65534) == 0 &&
+              ::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+          if (ready) (void)!::write(file, "line\n", 5);
+          char byte = 0;
+          (void)!::read(end, &byte, 1);
+        }) {}
 };
 
 TEST_F(ControlSocketRightsTest, LetsOthersLookAndOnlyMembersOfItsGroupAct) {
@@ -99,48 +84,33 @@ TEST_F(ControlSocketRightsTest, LetsMembersOfItsGroupLookAndThoseOfAnotherActWhe
 }
 
 /// Another user who pipelines a request without reading the answers, until told to end.
-class Flood {
+class Flood : public tests::ForkedChild {
  public:
-  Flood(const std::string& path, const std::string& line) {
-    EXPECT_EQ(::pipe(end_), 0);
-    child_ = ::fork();
-    if (child_ != 0) return;
-    ::fcntl(end_[0], F_SETFL, O_NONBLOCK);
-    ::close(end_[1]);
-    const bool ready = ::setgid(65534) == 0 && ::setuid(65534) == 0;
-    std::string lines;
-    for (int i = 0; i < 50; ++i) lines += line + '\n';
-    std::vector<int> files(20, -1);
-    char byte = 0;
-    while (ready && ::read(end_[0], &byte, 1) < 0) {
-      for (int& file : files) {
-        if (file < 0) {
-          file = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
-          sockaddr_un address{};
-          address.sun_family = AF_UNIX;
-          path.copy(address.sun_path, sizeof address.sun_path - 1);
-          (void)!::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address);
-        }
-        const ssize_t sent = ::send(file, lines.data(), lines.size(), MSG_NOSIGNAL);
-        if (sent >= 0 || errno == EAGAIN) continue;
-        ::close(file);
-        file = -1;
-      }
-      ::usleep(200);
-    }
-    ::_exit(0);
-  }
-  ~Flood() {
-    ::close(end_[0]);
-    ::close(end_[1]);
-    ::waitpid(child_, nullptr, 0);
-  }
-  Flood(const Flood&) = delete;
-  Flood& operator=(const Flood&) = delete;
-
- private:
-  int end_[2];
-  pid_t child_;
+  Flood(const std::string& path, const std::string& line)
+      : ForkedChild([&](int end) {
+          ::fcntl(end, F_SETFL, O_NONBLOCK);
+          const bool ready = ::setgid(65534) == 0 && ::setuid(65534) == 0;
+          std::string lines;
+          for (int i = 0; i < 50; ++i) lines += line + '\n';
+          std::vector<int> files(20, -1);
+          char byte = 0;
+          while (ready && ::read(end, &byte, 1) < 0) {
+            for (int& file : files) {
+              if (file < 0) {
+                file = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
+                sockaddr_un address{};
+                address.sun_family = AF_UNIX;
+                path.copy(address.sun_path, sizeof address.sun_path - 1);
+                (void)!::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address);
+              }
+              const ssize_t sent = ::send(file, lines.data(), lines.size(), MSG_NOSIGNAL);
+              if (sent >= 0 || errno == EAGAIN) continue;
+              ::close(file);
+              file = -1;
+            }
+            ::usleep(200);
+          }
+        }) {}
 };
 
 TEST_F(ControlSocketRightsTest, ServesThoseWhoMayActFirstAndLookersAtARate) {

@@ -1,13 +1,11 @@
 // A session keeps names, files and its state, after refused changes too.
-#include <sys/resource.h>
-
-#include <csignal>
 #include <fstream>
 #include <functional>
 #include <memory>
 
 #include "config/schema/error.h"
 #include "config/schema/read_file.h"
+#include "tests/daemon/io/file_size_limit.h"
 #include "tests/workbench/serve/study_page.h"
 #include "workbench/serve/study.h"
 
@@ -126,26 +124,7 @@ TEST_F(StudyPage, AFitThatEndsWithTheServerIsWritten) {
   EXPECT_EQ(Study(SessionFolder(page.session)).state()["trial"], "thesis-fitted.toml");
 }
 
-/// Files of this process can hold 512 bytes at most, as on a disk that is full.
-class FullDisk {
- public:
-  FullDisk() : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit small = before_;
-    small.rlim_cur = 512;
-    setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  void (*signal_)(int);
-  rlimit before_{};
-};
+constexpr rlim_t kFullDisk_bytes = 512;
 
 TEST_F(StudyPage, EveryResultWaitsUntilTheDiskHasRoom) {
   const auto saved = [this] {
@@ -153,7 +132,7 @@ TEST_F(StudyPage, EveryResultWaitsUntilTheDiskHasRoom) {
            std::filesystem::exists(page.session / "thesis-fitted-2.toml");
   };
   {
-    const FullDisk full;
+    const monitor::io::FileSizeLimit full(kFullDisk_bytes);
     for (int job = 0; job < 2; ++job) {
       ASSERT_EQ(page.post("fit").status, 200);
       const ordered_json state = finished();
