@@ -96,7 +96,7 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
     how.start_residual = first_m.col(0);
   }
   const auto sigma_of = [&](const Eigen::VectorXd& residual_m) {
-    return std::max(data.noise_floor_m, rms(residual_m, weights)) *
+    return std::max({data.noise_floor_m, rms(residual_m, weights), kLeastFloor_m}) *
            std::sqrt(correlation_factor(residual_m, weights));
   };
   FitSummary result;

@@ -16,6 +16,13 @@ constexpr double kLeapInTurns = 20;  ///< usual largest distances from the media
 constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
 /// Share of the samples that are usual: a leap makes two steps.
 constexpr double kUsual = 0.97;
+constexpr double kLeapInCounts = 4;  ///< steps of the encoder
+constexpr double kRounding = 1e-9;   ///< least step of an encoder over the usual range
+constexpr double kComesBack = 0.25;  ///< most of the leap that is left behind it
+/// Samples before a leap in which a step of the command explains it, and usual largest steps from
+/// which on it is one.
+constexpr std::size_t kBefore = 4;
+constexpr double kCommanded = 3;
 constexpr double kTravel = 0.02;  ///< least travel over the usual range
 constexpr double kResolutions = 3.0;
 constexpr double kCorrelation = 0.4;
@@ -25,14 +32,15 @@ bool counts(const Dataset& record, std::size_t k) {
   return k >= record.valid.size() || record.valid[k] != 0;
 }
 
-std::vector<double> steps_of(const Dataset& record) {
-  std::vector<double> steps_m;
+/// From sample to sample of position or command.
+std::vector<double> steps_of(const Dataset& record, const std::vector<double>& values) {
+  std::vector<double> steps;
   for (const SampleRange& span : segments(record)) {
     for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
-      steps_m.push_back(std::abs(record.y_m[k + 1] - record.y_m[k]));
+      steps.push_back(std::abs(values[k + 1] - values[k]));
     }
   }
-  return steps_m;
+  return steps;
 }
 
 /// Distance of each sample from the median of the five about it; 0 at the ends of a segment.
@@ -51,12 +59,36 @@ std::vector<double> turns_of(const Dataset& record) {
 }
 
 /// The greatest of those that are usual.
-double usual_m(std::vector<double> values_m) {
-  if (values_m.empty()) return 0.0;
-  const auto at = values_m.begin() +
-                  static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(values_m.size() - 1));
-  std::nth_element(values_m.begin(), at, values_m.end());
+double usual(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+/// The least step that is none of rounding: one count of an encoder.
+double resolution_m(const std::vector<double>& steps_m, double range_m) {
+  double least_m = range_m;
+  for (const double step_m : steps_m) {
+    if (step_m > kRounding * range_m) least_m = std::min(least_m, step_m);
+  }
+  return least_m;
+}
+
+/// True where the reading comes back to where it left, and no step of the command came before: a
+/// motion overshoots, and a jab is commanded. `usual_V`: usual largest step.
+bool is_no_motion(const Dataset& record, const SampleRange& span, const SampleRange& leap,
+                  double usual_V) {
+  if (leap.begin == span.begin || leap.end == span.end) return false;
+  const double left_m = record.y_m[leap.begin - 1];
+  const double away_m = std::abs(record.y_m[leap.begin] - left_m);
+  if (std::abs(record.y_m[leap.end] - left_m) > kComesBack * away_m) return false;
+  const std::size_t from = std::max(span.begin + 1, leap.begin - std::min(leap.begin, kBefore));
+  for (std::size_t k = from; k < leap.begin; ++k) {
+    if (std::abs(record.u_V[k] - record.u_V[k - 1]) > kCommanded * usual_V) return false;
+  }
+  return true;
 }
 
 /// Speed = offset + gain * command, and their correlation, between the ends of the range.
@@ -110,19 +142,21 @@ ValueRange ends_of(const Dataset& record, const std::vector<SampleRange>& leaps)
 
 std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
   const std::vector<double> turns_m = turns_of(record);
-  const double far_m = std::max(
-      {kLeap * range_m, kLeapInSteps * usual_m(steps_of(record)), kLeapInTurns * usual_m(turns_m)});
+  const std::vector<double> steps_m = steps_of(record, record.y_m);
+  const double far_m =
+      std::max({kLeap * range_m, kLeapInSteps * usual(steps_m), kLeapInTurns * usual(turns_m),
+                kLeapInCounts * resolution_m(steps_m, range_m)});
+  const double usual_V = usual(steps_of(record, record.u_V));
   std::vector<SampleRange> leaps;
   std::size_t samples = 0;
   for (const SampleRange& span : segments(record)) {
-    for (std::size_t k = span.begin; k < span.end; ++k) {
-      if (!counts(record, k) || !(turns_m[k] > far_m)) continue;
-      ++samples;
-      if (!leaps.empty() && leaps.back().end == k) {
-        leaps.back().end = k + 1;
-      } else {
-        leaps.push_back({k, k + 1});
-      }
+    for (std::size_t k = span.begin; k < span.end;) {
+      SampleRange leap{k, k};
+      while (leap.end < span.end && turns_m[leap.end] > far_m) ++leap.end;
+      k = std::max(leap.end, leap.begin + 1);
+      if (leap.end == leap.begin || !is_no_motion(record, span, leap, usual_V)) continue;
+      samples += leap.end - leap.begin;
+      leaps.push_back(leap);
     }
   }
   const bool motion =
@@ -157,17 +191,14 @@ StuckReading stuck_at(const Dataset& record, double value_m, const Following& mo
 ReadingFaults reading_faults(const Dataset& record) {
   ReadingFaults faults;
   if (record.size() < 10) return faults;
-  const ValueRange usual = usual_range(record.y_m);
-  const double range_m = usual.high - usual.low;
+  const ValueRange most = usual_range(record.y_m);
+  const double range_m = most.high - most.low;
   faults.leaps = leaps_of(record, range_m);
   const ValueRange ends = ends_of(record, faults.leaps);
   const Following moves = following(record, ends.low, ends.high);
   if (std::abs(moves.correlation) < kCorrelation) return faults;
-  double resolution_m = std::numeric_limits<double>::infinity();
-  for (const double step_m : steps_of(record)) {
-    if (step_m > 0.0) resolution_m = std::min(resolution_m, step_m);
-  }
-  const double travel_m = std::max(kTravel * range_m, kResolutions * resolution_m);
+  const double count_m = resolution_m(steps_of(record, record.y_m), range_m);
+  const double travel_m = std::max(kTravel * range_m, kResolutions * count_m);
   for (const double value_m : {ends.low, ends.high}) {
     StuckReading stuck = stuck_at(record, value_m, moves, travel_m);
     if (!stuck.spans.empty()) faults.stuck.push_back(std::move(stuck));

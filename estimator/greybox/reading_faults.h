@@ -19,7 +19,8 @@ struct ReadingFaults {
   std::vector<StuckReading> stuck;  ///< at the least value, at the greatest
 };
 
-/// Samples that are left out already are not looked at. A reading counts as stuck where the command
+/// A leap comes back to where it left within two samples, without a step of the command before it;
+/// the two outermost samples of a segment are not looked at. A reading counts as stuck where the command
 /// would move it by more than its resolution and a fiftieth of its range; none where speed and
 /// command hardly correlate.
 [[nodiscard]] ReadingFaults reading_faults(const Dataset& record);

@@ -81,7 +81,7 @@ std::string unexplained_words(const selection::Diagnosis& d) {
   if (d.checks && d.checks->misread()) {
     return "Unexplained: " + rest +
            ". What is missing was not sought: read the record as it says "
-           "below first.";
+           "below first, or, where the file's gain is off, free it with --prior NAME=none.";
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {

@@ -290,9 +290,13 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       innovations.physics_missing() ||
       (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
                                                   result.disturbance, result.rms_after_m));
-  // friction and play let less of it through than their linearised models do
+  // stated is no more than there is: friction and play let less through than their linearised
+  // models do
   if (result.disturbance) {
     result.disturbance->rms_m = std::min(result.disturbance->rms_m, result.rms_after_m);
+    for (DisturbanceLine& line : result.disturbance->lines) {
+      line.rms_m = std::min(line.rms_m, result.disturbance->rms_m);
+    }
   }
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());

@@ -35,6 +35,34 @@ TEST(ReadingFaults, AHealthyRecordHasNone) {
   }
 }
 
+/// 10 Hz, at rest but for a step of the command every ten seconds that the rod overshoots.
+Dataset resting() {
+  std::vector<double> u_V(600, 0.0);
+  std::vector<double> y_m(600);
+  double at_m = 0.3;
+  for (std::size_t k = 0; k < y_m.size(); ++k) {
+    const std::size_t within = k % 100;
+    if (within == 10) u_V[k] = 1.0;
+    if (within == 11) at_m += 0.05;
+    y_m[k] = at_m + (within == 11 ? 0.01 : 0.0);
+  }
+  return dataset_of(0.1, u_V, y_m);
+}
+
+TEST(ReadingFaults, AnOvershootOfARodThatMostlyRestsIsNoLeap) {
+  EXPECT_TRUE(reading_faults(resting()).leaps.empty());
+}
+
+TEST(ReadingFaults, AJabThatIsCommandedIsNoLeapAndOneThatIsNotIs) {
+  Dataset jabbed = resting();
+  std::fill(jabbed.y_m.begin(), jabbed.y_m.end(), 0.3);
+  for (std::size_t k = 111; k < 600; k += 100) jabbed.y_m[k] = 0.32;
+  jabbed.y_m[450] = 0.31;
+  const ReadingFaults faults = reading_faults(jabbed);
+  ASSERT_EQ(faults.leaps.size(), 1U);
+  EXPECT_EQ(faults.leaps.front().begin, 450U);
+}
+
 // A turning point lasts long in steps of a tenth of a millimetre.
 TEST(ReadingFaults, ACoarseEncoderTurnsWithoutBeingStuck) {
   Dataset coarse = record();
