@@ -20,9 +20,9 @@ struct ReadingFaults {
 };
 
 /// A leap comes back to where it left within two samples, without a step of the command before it;
-/// the two outermost samples of a segment are not looked at. A reading counts as stuck where the command
-/// would move it by more than its resolution and a fiftieth of its range; none where speed and
-/// command hardly correlate.
+/// the two outermost samples of a segment are not looked at. A reading counts as stuck where the
+/// command would move it by more than its resolution and a fiftieth of its range; none where speed
+/// and command hardly correlate.
 [[nodiscard]] ReadingFaults reading_faults(const Dataset& record);
 
 }  // namespace estimator::greybox
