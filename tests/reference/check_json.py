@@ -97,7 +97,7 @@ def check(root, programs, name):
         for words in commands(root, out)[name]:
             if "LOG" in words:
                 log = next(iter(sorted(out.glob("*.lcmlog"))), "none")
-                words = [f"file://{log}?mode=r" if word == "LOG" else word for word in words]
+                words = [f"file://{log}?mode=r&speed=0" if word == "LOG" else word for word in words]
             run = subprocess.run([str(programs / words[0]), *map(str, words[1:])], capture_output=True, text=True,
                                  cwd=folder)
             if run.returncode != 0:

@@ -1,5 +1,5 @@
-// Every option of `spoolwatch new stand` at both ends of its range, and every choice: the file is
-// written, and the daemon takes it.
+// Every answer of `spoolwatch new stand` at both ends of its range, and every choice: the daemon
+// takes the file. The command itself is run once with every option of each stand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,11 +7,13 @@
 #include <set>
 
 #include "tests/workbench/stand/every_question.h"
+#include "workbench/stand/configuration.h"
 
 namespace workbench_test {
 namespace {
 
 using questions::Form;
+namespace stand = workbench::stand;
 
 struct End {
   const char* flag;
@@ -82,9 +84,14 @@ Flags with_answer(const Flags& base, const std::string& flag, const std::string&
 }
 
 void expect_taken(const Flags& base, const std::string& flag, const std::string& value) {
-  const NewStand made(with_answer(base, flag, value));
-  EXPECT_EQ(made.exit_code(), 0) << made.out();
-  EXPECT_TRUE(made.passes_check()) << flag << " = " << value;
+  SCOPED_TRACE(flag + " = " + value);
+  const stand::Answers answers =
+      stand::answers_of(with_answer(base, flag, value), nullptr, nullptr);
+  ASSERT_NO_THROW(stand::check_answers(answers));
+  const program::Folder folder;
+  const std::string file = (folder.path() / "stand.toml").string();
+  std::ofstream(file) << stand::configuration_text(answers, {"stand", file, "new stand"});
+  EXPECT_TRUE(daemon_takes(file));
 }
 
 /// Every number and choice that such a stand is asked and that `done` does not have yet.
@@ -113,6 +120,32 @@ void expect_every_end_of(const std::string& backend) {
     if (base.at("backend") == backend) expect_every_end(base, done);
   }
   EXPECT_GT(done.size(), 20U);
+}
+
+/// `base` and every other answer that such a stand is asked, as it is where it is not given.
+Flags with_every_option(const Flags& base) {
+  const stand::Answers answers = stand::answers_of(base, nullptr, nullptr);
+  Flags flags = base;
+  for (const Question& q : asked_with(base)) {
+    const std::string value =
+        q.is_number() ? fmt::format("{:g}", answers.number(q.flag)) : answers.text(q.flag);
+    if (!value.empty()) flags.emplace(q.flag, value);
+  }
+  return flags;
+}
+
+TEST(NewStand, TakesEveryOption) {
+  std::set<std::string> given;
+  for (const Flags& base : full_stands()) {
+    const Flags flags = with_every_option(base);
+    const NewStand made(flags);
+    EXPECT_EQ(made.exit_code(), 0) << made.out();
+    EXPECT_TRUE(made.passes_check()) << made.text();
+    for (const auto& [flag, value] : flags) given.insert(flag);
+  }
+  for (const stand::StandQuestion& one : stand::stand_questions()) {
+    EXPECT_EQ(given.count(one.question.flag), 1U) << one.question.flag;
+  }
 }
 
 TEST(NewStandEnds, OfASimulatedStandAreTaken) { expect_every_end_of("sim"); }

@@ -66,6 +66,15 @@ inline std::string words(const Flags& flags) {
   return text;
 }
 
+/// `spoolwatchd --check` takes the file, or all of it but a device that is not there.
+inline bool daemon_takes(const std::string& file) {
+  const program::Result check = program::run({"--config", file, "--check"});
+  return check.exit_code == 0 ||
+         (check.exit_code == 78 &&
+          check.err.find("everything that can be checked without the device is valid") !=
+              std::string::npos);
+}
+
 /// A run of the command; its file goes away with the object.
 class NewStand {
  public:
@@ -85,14 +94,7 @@ class NewStand {
     text << std::ifstream(file()).rdbuf();
     return text.str();
   }
-  /// `spoolwatchd --check` takes the file, or all of it but a device that is not there.
-  [[nodiscard]] bool passes_check() const {
-    const program::Result check = program::run({"--config", file(), "--check"});
-    return check.exit_code == 0 ||
-           (check.exit_code == 78 &&
-            check.err.find("everything that can be checked without the device is valid") !=
-                std::string::npos);
-  }
+  [[nodiscard]] bool passes_check() const { return daemon_takes(file()); }
 
  private:
   program::Folder folder_;
