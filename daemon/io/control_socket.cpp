@@ -29,8 +29,9 @@ constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
 /// Connections of those who may command, and of those who may only query.
 constexpr std::size_t kMaxActing = 64;
 constexpr std::size_t kMaxLooking = 16;
-constexpr int kBacklog = 1024;
-constexpr int kAcceptedAtOnce = 256;
+/// Few, since that of a command may stand behind them: who finds no room waits in connect().
+constexpr int kBacklog = 16;
+constexpr int kAcceptedAtOnce = 64;
 /// Requests of one user who may only query: a live view asks a few times a second.
 constexpr double kLooksPerSecond = 50.0;
 constexpr double kMostLooks = 20.0;

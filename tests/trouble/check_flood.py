@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Floods the control socket as a user who may only look, and as one who may act: how long a `stop` waits.
+"""Floods the control socket as a user who may only look, and as members of the group that may act: how long a
+`stop` waits.
 
-  check_flood.py PROGRAMS CONFIG [--stops N] [--limit-ms MS]
+  check_flood.py PROGRAMS CONFIG [--stops N] [--limit-ms MS] [--processes N] [--only TEXT]
 
 Every stop must be answered within the limit, by a daemon whose memory stays flat, and the audit file must
 keep what was ordered. Without root the flood comes from the own user, who may act.
@@ -19,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from stand import Daemon  # noqa: E402
 
 NOBODY = 65534
+MEMBER = 1  # of the group whose members may act; user and group "daemon"
 ORDER = b'{"command": "arm"}\n'
 
 
@@ -79,8 +81,15 @@ FLOODS = {
     "half a line": (pipeline, b'{"comm', NOBODY),
     "nonsense": (pipeline, b"\x00\xff{]\n", NOBODY),
     "connections": (connections, b"", NOBODY),
-    "status by one who may act": (pipeline, b'{"command": "status"}\n', None),
-    "orders by one who may act": (pipeline, b'{"command": "hold"}\n', None),
+    "status by members": (pipeline, b'{"command": "status"}\n', MEMBER),
+    "orders by members": (pipeline, b'{"command": "hold"}\n', MEMBER),
+    "alarms by members": (pipeline, b'{"command": "alarms"}\n', MEMBER),
+    "notes by members": (pipeline, b'{"command": "note", "text": "' + 300 * b"x" + b'"}\n', MEMBER),
+    "reloads by members": (pipeline, b'{"command": "reload"}\n', MEMBER),
+    "stops by members": (pipeline, b'{"command": "stop"}\n', MEMBER),
+    "nonsense by members": (pipeline, b"\x00\xff{]\n", MEMBER),
+    "half a line by members": (pipeline, b'{"comm', MEMBER),
+    "connections by members": (connections, b"", MEMBER),
 }
 
 
@@ -90,21 +99,28 @@ def main():
     parser.add_argument("config")
     parser.add_argument("--stops", type=int, default=100)
     parser.add_argument("--limit-ms", type=float, default=100.0)
+    parser.add_argument("--processes", type=int, default=4, help="of each flood")
+    parser.add_argument("--only", default="")
     options = parser.parse_args()
     late = 0
     with Daemon(options.programs, options.config,
-                ["control.mode=0666", "loop.privileges=try"]) as daemon:
+                ["control.mode=0666", "control.act_group=daemon", "loop.privileges=try"]) as daemon:
         memory_kB = daemon.memory_kB()
         assert daemon.ask("arm")["ok"]
         each = -(-options.stops // len(FLOODS))
         for name, (flood, line, uid) in FLOODS.items():
+            if options.only not in name:
+                continue
             ends = time.monotonic() + 60
-            child = multiprocessing.Process(target=flood, args=(daemon.socket, line, ends, uid))
-            child.start()
+            children = [multiprocessing.Process(target=flood, args=(daemon.socket, line, ends, uid))
+                        for _ in range(options.processes)]
+            for child in children:
+                child.start()
             time.sleep(0.3)
             times_ms = []
             for _ in range(each):
-                daemon.ask("start")
+                if "stops" not in name:  # those come before every other order
+                    daemon.ask("start")
                 begin = time.monotonic()
                 answer = daemon.ask("stop")
                 times_ms.append(1e3 * (time.monotonic() - begin))
@@ -112,12 +128,13 @@ def main():
                     print(f"{name}: {answer}")
                     late += 1
                 time.sleep(0.02)
-            child.terminate()
-            child.join()
+            for child in children:
+                child.terminate()
+                child.join()
             late += sum(t > options.limit_ms for t in times_ms)
             times_ms.sort()
             print(f"{name:28} {len(times_ms)} stops: median {times_ms[len(times_ms) // 2]:6.1f} ms, "
-                  f"worst {times_ms[-1]:6.1f} ms")
+                  f"worst {times_ms[-1]:6.1f} ms", flush=True)
         grown_kB = daemon.memory_kB() - memory_kB
         print(f"memory grown by {grown_kB} kB")
         time.sleep(0.5)

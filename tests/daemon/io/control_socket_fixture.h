@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
 
@@ -37,13 +38,16 @@ class ControlSocketTest : public testing::Test {
     }
     return false;
   }
-  [[nodiscard]] int connect() const {
-    const int file = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  /// -1 and errno where that fails.
+  [[nodiscard]] int connect(int flags = 0) const {
+    const int file = ::socket(AF_UNIX, SOCK_STREAM | flags, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     config_.socket.copy(address.sun_path, sizeof address.sun_path - 1);
     if (::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return file;
+    const int error = errno;
     ::close(file);
+    errno = error;
     return -1;
   }
   static void say(int file, const std::string& text) {

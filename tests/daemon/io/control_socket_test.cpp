@@ -86,6 +86,28 @@ TEST_F(ControlSocketTest, OutlivesClientsThatGoFloodOrComeInCrowds) {
   ::close(flood);
 }
 
+TEST_F(ControlSocketTest, KeepsFewConnectionsWaitingBeforeThatOfACommand) {
+  ControlSocket socket(config_, "rig.toml");
+  constexpr std::size_t kFew = 20;  // each costs the loop that accepts them some 50 us under load
+  std::vector<int> crowd;
+  for (int file = connect(SOCK_NONBLOCK); file >= 0 && crowd.size() < 10 * kFew;
+       file = connect(SOCK_NONBLOCK)) {
+    crowd.push_back(file);
+  }
+  const int refused = errno;
+  EXPECT_LE(crowd.size(), kFew);
+  EXPECT_EQ(refused, EAGAIN) << "further ones wait in their own connect()";
+  look(socket);
+  const int command = connect(SOCK_NONBLOCK);
+  ASSERT_GE(command, 0) << "all that waited are accepted";
+  say(command, "the last\n");
+  ControlSocket::Request request;
+  ASSERT_TRUE(comes(socket, request));
+  EXPECT_EQ(request.line, "the last");
+  for (const int file : crowd) ::close(file);
+  ::close(command);
+}
+
 TEST_F(ControlSocketTest, ItsLockIsNotALinkToAnotherFile) {
   const std::filesystem::path other = config_.socket + ".other";
   std::filesystem::create_directories(other.parent_path());
