@@ -37,7 +37,10 @@ void say(const std::string& line) { std::cerr << "spoolwatch record: " << line <
 class Recording final : public live::FeedListener {
  public:
   explicit Recording(const RecordOptions& options)
-      : file_(options.out), duration_s_(options.duration_s) {}
+      : file_(options.out), duration_s_(options.duration_s) {
+    if (file_.kept().empty()) return;
+    say("an earlier record that was cut off is kept as " + file_.kept().string());
+  }
 
   void on(const spoolwatch::rods_t& rods) override { file_.note(rods); }
   void on(const spoolwatch::pressures_t& pressures) override { file_.note(pressures); }

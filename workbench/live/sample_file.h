@@ -1,12 +1,12 @@
 // Samples as they arrive, row by row into a CSV record (config/record/record.h) that has its name
-// only once it is complete: until then it is FILE.part beside it, where a record that was cut off
-// can still be found.
+// only once it is complete.
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
+#include <filesystem>
 #include <string>
 
+#include "config/record/growing_file.h"
 #include "config/record/sample_columns.h"
 
 namespace spoolwatch {
@@ -18,11 +18,7 @@ namespace workbench::live {
 class SampleFile {
  public:
   /// Throws config::schema::RunError when it cannot be made.
-  explicit SampleFile(std::string file);
-  /// Leaves an unfinished file as FILE.part.
-  ~SampleFile();
-  SampleFile(const SampleFile&) = delete;
-  SampleFile& operator=(const SampleFile&) = delete;
+  explicit SampleFile(const std::string& file) : out_(file) {}
 
   /// Takes what comes just before its sample. Columns of what comes only after the first row are
   /// left out.
@@ -32,7 +28,7 @@ class SampleFile {
   }
   /// Ticks ascend. A sample without a good position and command gives no row: a gap.
   void add(const spoolwatch::sample_t& sample);
-  /// Gives the file its name; without a row there is none. Throws config::schema::RunError.
+  /// Gives the file its name; without a row there is no file. Throws config::schema::RunError.
   void finish();
 
   [[nodiscard]] std::int64_t rows() const noexcept { return rows_; }
@@ -42,11 +38,11 @@ class SampleFile {
   [[nodiscard]] std::int64_t missing() const noexcept { return missing_; }
   [[nodiscard]] double duration_s() const noexcept;
 
- private:
-  [[noreturn]] void fail() const;
+  /// An earlier record of that name that was cut off, if there was one.
+  [[nodiscard]] const std::filesystem::path& kept() const noexcept { return out_.kept(); }
 
-  std::string file_, part_;
-  std::FILE* out_;
+ private:
+  config::record::GrowingFile out_;
   config::record::SampleColumns columns_;
   std::size_t width_ = 0;  ///< further columns
   std::string row_;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "daemon/io/alarm_store.h"
-#include "tests/daemon/io/file_size_limit.h"
 #include "tests/daemon/program/subprocess.h"
+#include "tests/file_size_limit.h"
 
 namespace monitor::io {
 namespace {
@@ -121,7 +121,7 @@ TEST_F(AlarmHistory, TakesAsManyLinesAsANearlyFullDisk) {
   free();
   constexpr std::size_t kRoom_bytes = 10'000;
   {
-    const FileSizeLimit limit(kRoom_bytes);
+    const tests::FileSizeLimit limit(kRoom_bytes);
     store.retry_history();
     for (int i = 0; i < 1000 && store.waiting_history() > kChanges; ++i) usleep(2000);
   }

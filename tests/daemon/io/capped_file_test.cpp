@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/daemon/io/file_size_limit.h"
 #include "tests/daemon/program/subprocess.h"
+#include "tests/file_size_limit.h"
 
 namespace {
 
@@ -41,7 +41,7 @@ TEST(CappedFile, CutsATornLineBeforeItIsWrittenAgain) {
   ASSERT_TRUE(file.try_append("first\n"));
   files_shrink = false;
   {
-    const FileSizeLimit limit(9);
+    const tests::FileSizeLimit limit(9);
     EXPECT_FALSE(file.try_append("second\n"));
   }
   files_shrink = true;

@@ -74,6 +74,19 @@ TEST(Record, HoldsWhatCameAndMarksWhatDidNot) {
   EXPECT_FALSE(fs::exists(csv + ".part"));
 }
 
+TEST(Record, GoesThroughAPipeThatStaysOne) {
+  const program::Folder folder;
+  const std::string log = live_test::make_log(folder.path() / "log", "12");
+  const std::string pipe = folder.path() / "pipe";
+  const std::string csv = folder.path() / "r.csv";
+  const program::Result result = program::shell(
+      "mkfifo " + pipe + "; timeout 20 cat " + pipe + " > " + csv + " & sleep 0.1; " + kProgram +
+      " record -o " + pipe + " --lcm-url " + played(log) + " && wait $!");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(read_record(csv).y_m, read_record(log).y_m);
+}
+
 TEST(Record, EndsAfterItsDurationOfSamples) {
   const program::Folder folder;
   const std::string log = live_test::make_log(folder.path() / "log", "12");

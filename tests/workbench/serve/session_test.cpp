@@ -5,7 +5,7 @@
 
 #include "config/schema/error.h"
 #include "config/schema/read_file.h"
-#include "tests/daemon/io/file_size_limit.h"
+#include "tests/file_size_limit.h"
 #include "tests/workbench/serve/study_page.h"
 #include "workbench/serve/study.h"
 
@@ -132,7 +132,7 @@ TEST_F(StudyPage, EveryResultWaitsUntilTheDiskHasRoom) {
            std::filesystem::exists(page.session / "thesis-fitted-2.toml");
   };
   {
-    const monitor::io::FileSizeLimit full(kFullDisk_bytes);
+    const tests::FileSizeLimit full(kFullDisk_bytes);
     for (int job = 0; job < 2; ++job) {
       ASSERT_EQ(page.post("fit").status, 200);
       const ordered_json state = finished();

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-namespace monitor::io {
+namespace tests {
 
 /// For its lifetime, in all threads. A longer write is cut short, and the next one fails.
 class FileSizeLimit {
@@ -28,4 +28,4 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-}  // namespace monitor::io
+}  // namespace tests
