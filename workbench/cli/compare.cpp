@@ -22,6 +22,7 @@
 #include "workbench/compare/request.h"
 #include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
+#include "workbench/files/write_all.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 #include "workbench/present/printed_axis.h"
@@ -110,13 +111,18 @@ void run(CompareArguments& a) {
   const present::PrintedAxis axis(present::motion_of(prepared.model));
   const validation::Comparison comparison =
       validation::compare(prepared.model, prepared.record, a.request.observer_per_s);
-  if (!a.residuals.empty()) write_residuals(comparison, prepared.model, prepared.units, a);
-  if (!a.report.empty()) {
-    present::write_report(compare::make_report(comparison, a.command), a.report);
-  }
-  if (!present::write_json(compare::to_json(comparison), a.json)) {
-    std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
-  }
+  files::write_all({[&] {
+                      if (!a.residuals.empty())
+                        write_residuals(comparison, prepared.model, prepared.units, a);
+                    },
+                    [&] {
+                      if (a.report.empty()) return;
+                      present::write_report(compare::make_report(comparison, a.command), a.report);
+                    },
+                    [&] {
+                      if (present::write_json(compare::to_json(comparison), a.json)) return;
+                      std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
+                    }});
 }
 
 }  // namespace

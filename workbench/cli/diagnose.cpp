@@ -15,6 +15,7 @@
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/progress_line.h"
 #include "workbench/diagnose/request.h"
+#include "workbench/files/write_all.h"
 #include "workbench/present/json.h"
 #include "workbench/present/printed_axis.h"
 
@@ -28,16 +29,20 @@ using diagnose::DiagnosisRequest;
 
 void write(const DiagnosisReport& outcome, const DiagnosisRequest& request) {
   if (request.json != "-") print(outcome, std::cout);
-  if (!request.output.empty()) {
+  const auto write_model = [&] {
+    if (request.output.empty()) return;
     if (outcome.fitted()) {
       config::record::write_whole(request.output, better_model_text(outcome));
     } else {
       std::cerr << "spoolwatch: " << request.output
                 << ": is not written, there is no better model\n";
     }
-  }
-  if (!request.report.empty()) write_report(report_of(outcome), request.report);
-  present::write_json(to_json(outcome), request.json);
+  };
+  files::write_all({write_model,
+                    [&] {
+                      if (!request.report.empty()) write_report(report_of(outcome), request.report);
+                    },
+                    [&] { present::write_json(to_json(outcome), request.json); }});
 }
 
 int run(const DiagnosisRequest& request) {

@@ -11,6 +11,7 @@
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/cli/selection_options.h"
+#include "workbench/files/write_all.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
 #include "workbench/present/printed_axis.h"
@@ -23,9 +24,17 @@ using fit::FitRequest;
 constexpr int kMostStarts = 1000;
 
 void write(const fit::FitReport& outcome, const FitRequest& request) {
-  if (!request.output.empty()) config::record::write_whole(request.output, to_model(outcome));
-  if (!request.report.empty()) write_report(to_report(outcome), request.report);
-  if (!present::write_json(to_json(outcome), request.json)) std::cout << to_text(outcome);
+  files::write_all({[&] {
+                      if (!present::write_json(to_json(outcome), request.json))
+                        std::cout << to_text(outcome);
+                    },
+                    [&] {
+                      if (!request.output.empty())
+                        config::record::write_whole(request.output, to_model(outcome));
+                    },
+                    [&] {
+                      if (!request.report.empty()) write_report(to_report(outcome), request.report);
+                    }});
 }
 
 int run(const FitRequest& request) {

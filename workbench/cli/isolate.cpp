@@ -6,6 +6,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/files/write_all.h"
 #include "workbench/isolate/isolation.h"
 #include "workbench/present/json.h"
 
@@ -18,10 +19,13 @@ using isolate::IsolationRequest;
 void run(const IsolationRequest& request) {
   const IsolationReport outcome = isolate::isolate(request);
   const config::units::PrintedAxis axis(outcome.motion);
-  if (!request.report.empty()) write_report(to_report(outcome), request.report);
-  if (!present::write_json(to_json(outcome), request.json)) {
-    std::cout << to_text(outcome, request.all_windows);
-  }
+  files::write_all({[&] {
+                      if (!request.report.empty()) write_report(to_report(outcome), request.report);
+                    },
+                    [&] {
+                      if (present::write_json(to_json(outcome), request.json)) return;
+                      std::cout << to_text(outcome, request.all_windows);
+                    }});
 }
 
 void declare_judging(CLI::App& command, IsolationRequest& request) {

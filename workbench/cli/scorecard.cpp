@@ -19,6 +19,7 @@
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/files/file_check.h"
+#include "workbench/files/write_all.h"
 #include "workbench/present/json.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/progress.h"
@@ -117,9 +118,17 @@ int run(const ScorecardOptions& o) {
   Card card = make_card(bench, methods, o.scope, parts, store, trials);
   card.command = o.command;
   card.runtime_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (!o.report.empty()) write_report(to_report(card), o.report);
-  if (!o.markdown.empty()) config::record::write_whole(o.markdown, to_markdown(card));
-  if (!present::write_json(to_json(card), o.json)) std::cout << to_text(card, o.details);
+  files::write_all({[&] {
+                      if (!o.report.empty()) write_report(to_report(card), o.report);
+                    },
+                    [&] {
+                      if (!o.markdown.empty())
+                        config::record::write_whole(o.markdown, to_markdown(card));
+                    },
+                    [&] {
+                      if (!present::write_json(to_json(card), o.json))
+                        std::cout << to_text(card, o.details);
+                    }});
   return stopped;
 }
 

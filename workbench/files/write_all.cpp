@@ -1,0 +1,21 @@
+#include "workbench/files/write_all.h"
+
+#include <string>
+
+#include "config/schema/error.h"
+
+namespace workbench::files {
+
+void write_all(const std::vector<std::function<void()>>& writers) {
+  std::string failed;
+  for (const std::function<void()>& write : writers) {
+    try {
+      write();
+    } catch (const config::schema::RunError& error) {
+      failed += (failed.empty() ? "" : "; ") + std::string(error.what());
+    }
+  }
+  if (!failed.empty()) throw config::schema::RunError(failed);
+}
+
+}  // namespace workbench::files
