@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -52,6 +53,24 @@ plant_sim::ModelFile read_model(const fs::path& file) {
 void step(const RunningDaemon& daemon, const std::string& text) {
   std::cout << text << std::endl;
   daemon.note(text);
+}
+
+/// Puts the files back that the daemon runs by, since it did not take others. `files` names them,
+/// `copies` where they also are.
+[[noreturn]] void undo(const RunningDaemon& daemon, const Error& why, const std::string& files,
+                       const std::string& copies, const std::function<void()>& put_back) {
+  try {
+    put_back();
+  } catch (const Error& e) {
+    throw RunError(std::string("the daemon did not take it (") + why.what() + "), and " + files +
+                   " are not back: " + e.what() + "; copy them from " + copies +
+                   " before a restart");
+  }
+  try {
+    daemon.reload();
+  } catch (const Error&) {  // it still runs by the old rules: it took nothing
+  }
+  throw RunError("the daemon did not take it, " + files + " are back: " + why.what());
 }
 
 class PromotionAttempt {
@@ -142,20 +161,16 @@ class PromotionAttempt {
     return records_.size() > 1 ? records_.size() - 1 : 1;
   }
   void swap() {
+    const std::vector<fs::path> files = {daemon_.model_file(), daemon_.bands_file()};
     const int version =
-        promotion::replace({{daemon_.model_file(), promotion::read_whole(options_.model)},
-                            {daemon_.bands_file(), bands_}});
+        promotion::replace({{files[0], promotion::read_whole(options_.model)}, {files[1], bands_}});
     try {
       daemon_.reload();
     } catch (const Error& e) {
-      promotion::bring_back({daemon_.model_file(), daemon_.bands_file()}, version);
-      try {
-        daemon_.reload();
-      } catch (const Error&) {  // it still runs by the old rules: it took nothing
-      }
-      throw RunError(std::string("the daemon did not take it, the old files are "
-                                 "back: ") +
-                     e.what());
+      undo(daemon_, e, "the old files", "FILE.v" + std::to_string(version), [&] {
+        promotion::bring_back(files, version);
+        promotion::use_up(files, version);
+      });
     }
     step(daemon_, "in use; the one before it is kept as version " + std::to_string(version) +
                       ": spoolwatch promote --back");
@@ -174,7 +189,13 @@ void go_back(const RunningDaemon& daemon) {
   const int version = promotion::newest_version(files);
   if (version == 0) throw RunError("there is none before " + files[0].string());
   promotion::bring_back(files, version);
-  daemon.reload();
+  try {
+    daemon.reload();
+  } catch (const Error& e) {
+    undo(daemon, e, "the files in use", "FILE.withdrawn",
+         [&] { promotion::withdraw(files, version); });
+  }
+  promotion::use_up(files, version);
   step(daemon, "version " + std::to_string(version) + " is in use again");
 }
 

@@ -29,9 +29,21 @@ struct Replacement {
 /// then the files are as they were.
 int replace(const std::vector<Replacement>& replacements);
 
-/// Brings a version back; it is used up, and what was in use becomes FILE.withdrawn. Throws
-/// config::schema::RunError.
+/// Replaces all files or none; `copies` have what the files have now. Throws
+/// config::schema::RunError; then the files are as they were, a copy in a file's place where
+/// nothing else can be written.
+void write_together(const std::vector<Replacement>& replacements,
+                    const std::vector<std::filesystem::path>& copies);
+
+/// Brings a version back; what was in use becomes FILE.withdrawn, the version stays until
+/// use_up(). Throws config::schema::RunError; then the files are as they were.
 void bring_back(const std::vector<std::filesystem::path>& files, int version);
+
+/// Takes bring_back() back: FILE.withdrawn is in use again. Throws config::schema::RunError.
+void withdraw(const std::vector<std::filesystem::path>& files, int version);
+
+/// Removes a version that is in use again.
+void use_up(const std::vector<std::filesystem::path>& files, int version);
 
 /// The file's bytes. Throws config::schema::RunError.
 [[nodiscard]] std::string read_whole(const std::filesystem::path& file);

@@ -149,6 +149,20 @@ TEST_F(Promote, TakesABetterModelAndGivesTheOldOneBack) {
   }
 }
 
+TEST_F(Promote, KeepsWhatIsInUseWhereTheDaemonDoesNotTakeTheVersionBefore) {
+  ASSERT_EQ(promote(path("right.toml") + " --record " + healthy_).exit_code, 0);
+  const json promoted = status();
+  const std::string bands = read(path("bands.toml"));
+  std::ofstream(path("bands.toml.v1")) << "no bands";
+  const program::Result back = promote("--back");
+  EXPECT_EQ(back.exit_code, 1);
+  EXPECT_THAT(back.out, HasSubstr("the daemon did not take it, the files in use are back: "));
+  EXPECT_EQ(read(path("model.toml")), right_);
+  EXPECT_EQ(read(path("bands.toml")), bands);
+  EXPECT_TRUE(fs::exists(path("model.toml.v1"))) << "the version is not used up";
+  EXPECT_EQ(status()["rules_hash"], promoted["rules_hash"]);
+}
+
 TEST_F(Promote, IsRefusedWhenTheBandsWouldTellNewAlarms) {
   const program::Result result =
       promote(path("right.toml") + " --record " + healthy_ + " --record " + faulty_);

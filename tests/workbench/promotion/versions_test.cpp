@@ -14,17 +14,19 @@
 
 namespace {
 
-/// Folders that may still be synced before every further one fails; negative: all may.
+/// Folders, and files, that may still be synced before every further one fails; negative: all may.
 std::atomic<int> folders_that_sync{-1};
+std::atomic<int> files_that_sync{-1};
 
 }  // namespace
 
 /// In place of the library's, for this program.
 extern "C" int fsync(int file) {
   struct stat found {};
-  if (folders_that_sync >= 0 && fstat(file, &found) == 0 && S_ISDIR(found.st_mode) &&
-      folders_that_sync-- <= 0) {
-    folders_that_sync = 0;
+  const bool folder = fstat(file, &found) == 0 && S_ISDIR(found.st_mode);
+  std::atomic<int>& left = folder ? folders_that_sync : files_that_sync;
+  if (left >= 0 && left-- <= 0) {
+    left = 0;
     errno = EIO;
     return -1;
   }
@@ -49,11 +51,16 @@ TEST(Versions, AreKeptAndBroughtBackOneAfterTheOther) {
   EXPECT_EQ(promotion::replace({{a, "a2"}, {b, "b2"}}), 2);
   EXPECT_EQ(promotion::read_whole(a), "a2");
   EXPECT_EQ(promotion::read_whole(promotion::version_of(b, 1)), "b0");
-  promotion::bring_back({a, b}, promotion::newest_version({a, b}));
+  const auto go_back = [&] {
+    const int version = promotion::newest_version({a, b});
+    promotion::bring_back({a, b}, version);
+    promotion::use_up({a, b}, version);
+  };
+  go_back();
   EXPECT_EQ(promotion::read_whole(a), "a1");
   EXPECT_EQ(promotion::read_whole(b), "b1");
   EXPECT_EQ(promotion::read_whole(a.string() + ".withdrawn"), "a2");
-  promotion::bring_back({a, b}, promotion::newest_version({a, b}));
+  go_back();
   EXPECT_EQ(promotion::read_whole(a), "a0");
   EXPECT_EQ(promotion::newest_version({a, b}), 0);
 }
@@ -128,6 +135,54 @@ TEST(Versions, BringBackEveryFileWhenTheFolderIsNotSynced) {
   EXPECT_EQ(promoted(), 1);
   folders_that_sync = -1;
   EXPECT_EQ(promotion::read_whole(b), "b1");
+}
+
+// Model and bands of different versions would keep the daemon from starting again.
+TEST(Versions, StayTogetherWhereNothingCanBeWrittenAnyMore) {
+  const program::Folder folder;
+  const fs::path a = folder.path() / "a.toml";
+  const fs::path b = folder.path() / "b.toml";
+  // two copies and two files; from one of them on, nothing is written
+  for (int synced = 0; synced < 4; ++synced) {
+    SCOPED_TRACE(synced);
+    write(a, "a0");
+    write(b, "b0");
+    files_that_sync = synced;
+    EXPECT_THROW(promotion::replace({{a, "a1"}, {b, "b1"}}), config::schema::RunError);
+    EXPECT_EQ(promotion::read_whole(a), "a0");
+    EXPECT_EQ(promotion::read_whole(b), "b0");
+    files_that_sync = -1;
+    ASSERT_EQ(promotion::replace({{a, "a1"}, {b, "b1"}}), 1);
+    files_that_sync = synced;
+    EXPECT_THROW(promotion::bring_back({a, b}, 1), config::schema::RunError);
+    files_that_sync = -1;
+    EXPECT_EQ(promotion::read_whole(a), "a1");
+    EXPECT_EQ(promotion::read_whole(b), "b1");
+    promotion::use_up({a, b}, 1);
+  }
+}
+
+TEST(Versions, GoBackTogetherOrNotAtAll) {
+  const program::Folder folder;
+  const fs::path a = folder.path() / "a.toml";
+  const fs::path b = folder.path() / "b.toml";
+  write(a, "a0");
+  write(b, "b0");
+  ASSERT_EQ(promotion::replace({{a, "a1"}, {b, "b1"}}), 1);
+  // two files are kept as withdrawn and two are replaced, each with its folder
+  constexpr int kSyncs = 4;
+  for (int synced = 0; synced < kSyncs; ++synced) {
+    SCOPED_TRACE(synced);
+    folders_that_sync = synced;
+    EXPECT_THROW(promotion::bring_back({a, b}, 1), config::schema::RunError);
+    folders_that_sync = -1;
+    EXPECT_EQ(promotion::read_whole(a), "a1");
+    EXPECT_EQ(promotion::read_whole(b), "b1");
+    EXPECT_EQ(promotion::newest_version({a, b}), 1);
+  }
+  promotion::bring_back({a, b}, 1);
+  EXPECT_EQ(promotion::read_whole(a), "a0");
+  EXPECT_EQ(promotion::read_whole(b), "b0");
 }
 
 }  // namespace
