@@ -22,8 +22,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def timeless(text):
-    """Reports name the minute at which they were made."""
-    return re.sub(rb"20\d\d-\d\d-\d\d \d\d:\d\d", b"", text)
+    """Without the minute at which a report was made, and the time that the answer took."""
+    return re.sub(rb"20\d\d-\d\d-\d\d \d\d:\d\d|\"(?:runtime|fit)_s\": *[-+.e0-9]+", b"", text)
 
 
 class Tries:
@@ -119,6 +119,57 @@ class Tries:
         self.check(f"{file.name}: seven bytes at a time",
                    short.returncode == 0 and timeless(file.read_bytes()) == timeless(whole), short)
 
+    def grows(self, command, file):
+        """A record that is written row by row: it has its name when it is whole, and what came before a fault
+        stays beside it."""
+        good = self.run(command)
+        self.check(f"{file.name} written", good.returncode == 0, good)
+        whole = file.read_bytes()
+        part = file.with_name(file.name + ".part")
+        for fault in (f"write_enospc:{file.name}:0", f"write_enospc:{file.name}:{len(whole) // 2}",
+                      f"write_eio:{file.name}:{len(whole) - 1}", f"sync_eio:{file.name}:0",
+                      f"rename_eio:{file.name}:0"):
+            file.write_bytes(b"what was there")
+            bad = self.run(command, fault)
+            left = part.read_bytes()
+            said = [line for line in bad.stderr.splitlines() if "cannot be written" in line]
+            self.check(f"{file.name}: {fault}",
+                       bad.returncode == 1 and file.read_bytes() == b"what was there" and len(said) == 1
+                       and part.name in said[0] and whole.startswith(left) and (not left or left.endswith(b"\n")), bad)
+            part.unlink()
+        bad = self.run(command, f"sync_folder_eio:{file.parent.name}:0")
+        self.check(f"{file.name}: its folder is not synced",
+                   bad.returncode == 1 and file.read_bytes() == whole and "Input/output error" in bad.stderr, bad)
+        short = self.run(command, f"write_short:{file.name}:0")
+        self.check(f"{file.name}: seven bytes at a time",
+                   short.returncode == 0 and file.read_bytes() == whole and not part.exists(), short)
+
+    def promotes(self, config):
+        """Model and bands of the running daemon, which are replaced and brought back together."""
+        healthy, own = config / "healthy.csv", config / "promoted"
+        own.mkdir()
+        subprocess.run(["cp", "-r", config / "models", config / "live_loop.toml", own], check=True)
+        with Daemon(self.programs, own / "live_loop.toml", ["loop.privileges=try"]) as daemon:
+            ask = ("--socket", daemon.socket)
+            files = [own / "models/thesis.toml", own / "live_bands.toml"]
+            forth = ["spoolwatch", "promote", own / "models/thesis_calibrated.toml", "--record", healthy, *ask]
+            back = ["spoolwatch", "promote", "--back", *ask]
+            first = self.run(forth)
+            self.check("promoted", first.returncode == 0, first)
+            for command in (back, forth):
+                before = [file.read_bytes() for file in files]
+                for fault in (*(f"{kind}:{file.name}:0" for file in files
+                                for kind in ("write_enospc", "write_eio", "sync_eio", "rename_eio")),
+                              *(f"sync_folder_eio:{file.parent.name}:0" for file in files)):
+                    bad = self.run(command, fault)
+                    now = [file.read_bytes() for file in files]
+                    line = bad.stderr.strip().splitlines()
+                    self.check(f"{command[2]}: {fault}",
+                               bad.returncode == 1 and now == before and len(line) == 1
+                               and not any(".part" in p.name for file in files for p in file.parent.iterdir()), bad)
+                good = self.run(command)
+                self.check(f"{command[2]} after all", good.returncode == 0, good)
+
     def alarms(self, config, fault, alarm):
         """Files of the running daemon: it goes on, and an alarm says what is missing."""
         self.tried += 1
@@ -209,6 +260,10 @@ def main():
         tries.reads([*estimate, "--map", mapping], mapping, 78)
         tries.writes(["spoolwatch", "import", record, "-o", folder / "clean.csv"], folder / "clean.csv")
         tries.writes(["spoolwatch", "fit", thesis, record, "-o", folder / "fitted.toml"], folder / "fitted.toml")
+        tries.writes(["spoolwatch", "diagnose", thesis, record, "--quiet", "--only", "friction", "-o",
+                      folder / "diagnosed.toml"], folder / "diagnosed.toml")
+        tries.writes(["spoolwatch", "isolate", calibrated, healthy, "--json", folder / "isolated.json"],
+                     folder / "isolated.json")
         for option, name in (("--json", "compared.json"), ("--report", "compared.html"),
                              ("--residuals", "compared.csv")):
             tries.writes(["spoolwatch", "compare", thesis, record, option, folder / name], folder / name)
@@ -216,6 +271,9 @@ def main():
         for name in ("out.mcap", "out.json"):
             tries.writes(["spoolwatch", "export", log, "-o", folder / name], folder / name)
         tries.reads(["spoolwatch", "export", log, "-o", folder / "log.csv"], log, 65)
+        tries.grows(["spoolwatch", "record", "-o", folder / "recorded.csv", "--lcm-url",
+                     f"file://{log}?mode=r&speed=0"], folder / "recorded.csv")
+        tries.promotes(folder)
         tries.makes(["spoolwatch", "new", "stand", "--backend", "sim", "--model", calibrated, "--low-mm", "0",
                      "--high-mm", "600", "--max-speed-mmps", "500", "-o", folder / "stand.toml"],
                      folder / "stand.toml")
