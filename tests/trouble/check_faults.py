@@ -156,6 +156,12 @@ class Tries:
             back = ["spoolwatch", "promote", "--back", *ask]
             first = self.run(forth)
             self.check("promoted", first.returncode == 0, first)
+            answer = own / "status.json"
+            for fault in ("write_enospc", "write_eio", "rename_eio"):
+                answer.write_bytes(b"what was there")
+                bad = self.run(["spoolwatch", "status", "--json", answer, *ask], f"{fault}:{answer.name}:0")
+                self.check(f"{answer.name}: {fault}", bad.returncode == 1 and len(bad.stderr.splitlines()) == 1
+                           and answer.read_bytes() == b"what was there", bad)
             for command in (back, forth):
                 before = [file.read_bytes() for file in files]
                 for fault in (*(f"{kind}:{file.name}:0" for file in files

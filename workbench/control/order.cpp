@@ -6,9 +6,9 @@
 #include <unistd.h>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 
 namespace workbench::control {
@@ -97,10 +97,7 @@ void write_json(const ordered_json& answer, const std::string& file) {
     std::cout << text;
     return;
   }
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out) throw RunError(file + ": cannot be written");
+  config::record::write_whole(file, text);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ bool is_special(const std::string& file) {
 
 void check_inputs_kept(const OutputFile& output, const InputFiles& inputs) {
   std::vector<std::string> kept = inputs.records;
-  if (!output.may_replace_model) kept.push_back(inputs.model);
+  if (!output.may_replace_model && !inputs.model.empty()) kept.push_back(inputs.model);
   for (const std::string& input : kept) {
     if (same_file(output.file, input)) {
       throw UsageError(output.option + " " + output.file + ": would overwrite an input");

@@ -21,7 +21,7 @@ struct OutputFile {
 };
 
 struct InputFiles {
-  std::string model;
+  std::string model;  ///< empty: none
   std::vector<std::string> records;
 };
 
