@@ -54,6 +54,21 @@ limit_m = 0.08
 time_s = 0.02
 action = "latch"
 )";
+inline constexpr const char* kStale = R"(
+[safety]
+ramp_s = 0.1
+[[guard]]
+kind = "stale"
+age_s = 0.01
+action = "latch"
+)";
+inline constexpr const char* kOverrun = R"(
+[safety]
+ramp_s = 0.1
+[[guard]]
+kind = "overrun"
+action = "latch"
+)";
 inline constexpr const char* kEStop = R"(
 [[guard]]
 kind = "e_stop"

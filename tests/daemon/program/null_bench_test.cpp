@@ -20,7 +20,8 @@ struct Failure {
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
   std::string more = kGuards;   ///< further configuration
   bool by_cable = false;        ///< the daemon reaches the rig by the cable
-  bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
+  double outage_s = 0.0;        ///< it goes on after that, and the device's time-out is no help
+  bool on_return = false;       ///< it begins when the outage ends
   std::vector<std::string> set{};
   const char* action{"-"};  ///< the acting guard's
 };
@@ -28,6 +29,8 @@ struct Failure {
 /// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two
 /// at least, 52 at most.
 constexpr double kOutage_s = 0.047;
+/// The loop loses at least three periods of 5 ms, of which two are allowed.
+constexpr double kThreePeriods_s = 0.021;
 /// Commands on their way to the rig have arrived by then.
 constexpr std::int64_t kSettled_ns = 10'000'000;
 
@@ -63,7 +66,7 @@ std::vector<Failure> causes() {
       {"position missing", [](Bench& b, Daemon&) { b.set("encoder_offset_m=50"); }, false, false,
        true},
       {"loop late, then back", [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); }, false, false,
-       false, kGuards, false, true},
+       false, kGuards, false, kOutage_s},
       {"position missing", [](Bench& b, Daemon&) { b.cable().refuse_reads(); }, false, true, false,
        kGuards, true},
       {"position missing",
@@ -73,6 +76,7 @@ std::vector<Failure> causes() {
        false,
        kGuards,
        true,
+       0.0,
        false,
        {"--set", "modbus.stale_after_s=0.1"}},
       {"readings stop", [](Bench& b, Daemon&) { b.cable().swallow_reads(); }, false, true, false,
@@ -99,6 +103,18 @@ std::vector<Failure> causes() {
        kChambers},
       {"guard transducer", [](Bench& b, Daemon&) { b.set("supply_pressure_Pa=x0.4"); }, false, true,
        false, kTransducer},
+      {"guard stale", [](Bench& b, Daemon&) { b.cable().swallow_reads(); }, false, true, false,
+       kStale, true},
+      {"guard overrun",
+       [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); },
+       false,
+       false,
+       false,
+       kOverrun,
+       false,
+       kThreePeriods_s,
+       true,
+       {"--set", "loop.max_lost_in_a_row=2"}},
       {"enable lost", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false, kEnable},
   };
 }
@@ -124,23 +140,29 @@ struct Trial {
 
 Trial attempt(const Failure& failure, Bench& bench) {
   std::vector<std::string> arguments = bench.arguments(failure.by_cable);
-  if (failure.goes_on) arguments.insert(arguments.end(), {"--set", "modbus.watchdog_s=1"});
+  if (failure.outage_s > 0.0) arguments.insert(arguments.end(), {"--set", "modbus.watchdog_s=1"});
   arguments.insert(arguments.end(), failure.set.begin(), failure.set.end());
   Daemon daemon(arguments);
   EXPECT_TRUE(bench.moves()) << failure.row << ": no motion";
   Trial trial;
-  const std::int64_t begin_ns = hal::monotonic_ns();
+  std::int64_t begin_ns = hal::monotonic_ns();
   failure.cause(bench, daemon);
-  const std::int64_t begun_ns = hal::monotonic_ns();
-  if (failure.goes_on) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(kOutage_s));
+  std::int64_t begun_ns = hal::monotonic_ns();
+  if (failure.outage_s > 0.0) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(failure.outage_s));
+    const std::int64_t back_ns = hal::monotonic_ns();
     signal_daemon(daemon, SIGCONT);
-    trial.longer_s = static_cast<double>(hal::monotonic_ns() - begin_ns) * 1e-9 - kOutage_s;
+    trial.longer_s = static_cast<double>(hal::monotonic_ns() - begin_ns) * 1e-9 - failure.outage_s;
+    if (failure.on_return) {
+      begin_ns = back_ns;
+      begun_ns = hal::monotonic_ns();
+      trial.longer_s = 0.0;
+    }
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(600));
   trial.measured = measure(bench.watcher().looks(), begin_ns, begun_ns, failure.at_command);
   if (failure.spoils_reading) trial.measured.travel_m = 0.0;
-  if (failure.goes_on && !std::isnan(trial.measured.most_s)) {
+  if (failure.outage_s > 0.0 && !failure.on_return && !std::isnan(trial.measured.most_s)) {
     EXPECT_TRUE(kept_still(bench.watcher().looks(), begun_ns)) << "the law went on before null";
   }
   if (failure.row == "process stopped") {
@@ -164,7 +186,8 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
     Trial trial;
     trial.measured.most_s = std::nan("");
     // A loop that is back gives null for one period: a watcher that was late itself looks again.
-    for (int i = 0; i < (failure.goes_on ? 5 : 1) && std::isnan(trial.measured.most_s); ++i) {
+    for (int i = 0; i < (failure.outage_s > 0.0 ? 5 : 1) && std::isnan(trial.measured.most_s);
+         ++i) {
       Bench bench(failure.more);
       std::vector<std::string> check = bench.arguments();
       check.insert(check.end(), failure.set.begin(), failure.set.end());
