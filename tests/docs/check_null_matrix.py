@@ -20,7 +20,7 @@ import check_flood  # noqa: E402
 import measure_null  # noqa: E402
 import modbus_troubles  # noqa: E402
 
-NUMBERS = {"six": 6, "fifteen": 15, "sixty": 60}
+NUMBERS = {"six": 6, "seventeen": 17, "sixty": 60}
 
 
 def null_matrix():

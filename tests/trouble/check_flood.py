@@ -64,6 +64,29 @@ def pipeline(path, line, ends, uid):
         time.sleep(0.001)
 
 
+def answered(path, line, ends, uid):
+    """Twenty connections, each of which waits for the answer to one line and comes again."""
+    become(uid)
+    files = []
+    while time.monotonic() < ends:
+        try:
+            while len(files) < 20:
+                files.append(connection(path))
+                files[-1].send(line)
+        except OSError:
+            pass
+        for one in list(files):
+            try:
+                if one.recv(4096) is not None:
+                    raise ConnectionError
+            except BlockingIOError:
+                pass
+            except OSError:
+                one.close()
+                files.remove(one)
+        time.sleep(0.0005)
+
+
 def connections(path, _line, ends, uid):
     """As many connections as there can be, each gone at once."""
     become(uid)
@@ -87,6 +110,8 @@ FLOODS = {
     "notes by members": (pipeline, b'{"command": "note", "text": "' + 300 * b"x" + b'"}\n', MEMBER),
     "reloads by members": (pipeline, b'{"command": "reload"}\n', MEMBER),
     "stops by members": (pipeline, b'{"command": "stop"}\n', MEMBER),
+    "answered stops by members": (answered, b'{"command": "stop"}\n', MEMBER),
+    "answered orders by members": (answered, b'{"command": "hold"}\n', MEMBER),
     "nonsense by members": (pipeline, b"\x00\xff{]\n", MEMBER),
     "half a line by members": (pipeline, b'{"comm', MEMBER),
     "connections by members": (connections, b"", MEMBER),
