@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <string>
 #include <utility>
 
 namespace monitor::detection {
@@ -27,6 +28,11 @@ void SystemAlarms::report(const io::PublisherStatus& publisher, const io::Record
   const std::int64_t dropped = recorder.dropped_records - dropped_before_;
   set("recorder", "dropping", Severity::minor, dropped > 0,
       dropped > 0 ? "the queue to the recorder was full; messages are missing in the log" : "");
+  const std::int64_t removed = recorder.removed_records - removed_before_;
+  set("recorder", "log_removed", Severity::minor, removed > 0,
+      removed > 0 ? "a log was removed while it was written; " + std::to_string(removed) +
+                        " messages are on no disk"
+                  : "");
   const std::int64_t failures = publisher.send_failures - failures_before_;
   set("lcm", "send_failed", Severity::minor, failures > 0,
       failures > 0 ? "LCM could not send messages; is the network up?" : "");
@@ -37,6 +43,7 @@ void SystemAlarms::report(const io::PublisherStatus& publisher, const io::Record
                                   std::strerror(evidence.error)
                             : "too many alarms at once: some have no evidence");
   no_evidence_before_ += no_evidence;
+  removed_before_ = recorder.removed_records;
   dropped_before_ = recorder.dropped_records;
   failures_before_ = publisher.send_failures;
 }

@@ -20,9 +20,9 @@
 namespace monitor::detection {
 
 /// Sets the conditions recorder.disk_full, recorder.write_failed, recorder.dropping (messages lost
-/// to a full queue since the last call), lcm.send_failed and evidence.failed in `book`, and calls
-/// `changed` for each alarm that came or went. Call once a second; the counts refer to the time
-/// since the last call.
+/// to a full queue since the last call), recorder.log_removed, lcm.send_failed and evidence.failed
+/// in `book`, and calls `changed` for each alarm that came or went. Call once a second; the counts
+/// refer to the time since the last call.
 class SystemAlarms {
  public:
   void report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
@@ -32,6 +32,7 @@ class SystemAlarms {
 
  private:
   std::int64_t dropped_before_ = 0;
+  std::int64_t removed_before_ = 0;
   std::int64_t failures_before_ = 0;
   std::int64_t no_evidence_before_ = 0;
 };

@@ -80,6 +80,7 @@ RecorderStatus Recorder::status() const noexcept {
   status.written_records = written_.load(std::memory_order_relaxed);
   status.dropped_records = dropped_.load(std::memory_order_relaxed);
   status.lost_records = lost_.load(std::memory_order_relaxed);
+  status.removed_records = removed_.load(std::memory_order_relaxed);
   status.error = error_.load(std::memory_order_relaxed);
   status.disk_full = means_full(status.error);
   status.write_failed = status.error != 0 && !status.disk_full;
@@ -105,6 +106,7 @@ void Recorder::flush_backlog() {
     const EventLog::Written written = log_->write();
     for (std::size_t i = 0; i < written.events; ++i) backlog_->drop_oldest();
     written_.fetch_add(static_cast<std::int64_t>(written.events), std::memory_order_relaxed);
+    removed_.store(log_->removed(), std::memory_order_relaxed);
     if (written.error != 0) {
       error_ = written.error;
       retry_in_ = background_ ? kRetryBackground : kRetryInline;

@@ -41,6 +41,7 @@ struct RecorderStatus {
   std::int64_t written_records = 0;
   std::int64_t dropped_records = 0;  // queue full
   std::int64_t lost_records = 0;     // overwritten in memory while the disk was full
+  std::int64_t removed_records = 0;  // in logs that were removed while they were written
   bool disk_full = false;            // no space, quota or file-size limit
   bool write_failed = false;         // any other reason
   int error = 0;                     // errno of the present failure
@@ -81,6 +82,7 @@ class Recorder {
   std::atomic<std::int64_t> written_{0};
   std::atomic<std::int64_t> dropped_{0};
   std::atomic<std::int64_t> lost_{0};
+  std::atomic<std::int64_t> removed_{0};
   std::atomic<int> error_{0};
   DrainThread thread_;  // last member: uses the others
 };

@@ -49,6 +49,11 @@ TEST_F(SystemAlarmsTest, LastAsLongAsACountGrows) {
   recorder_.dropped_records = 5;
   EXPECT_THAT(report(200), ElementsAre("lcm.send_failed off"));
   EXPECT_THAT(report(400), ElementsAre("recorder.dropping off"));
+  recorder_.removed_records = 838;
+  EXPECT_THAT(report(600), ElementsAre("recorder.log_removed on"));
+  EXPECT_EQ(book_.alarms().back().reason,
+            "a log was removed while it was written; 838 messages are on no disk");
+  EXPECT_THAT(report(800), ElementsAre("recorder.log_removed off"));
 }
 
 }  // namespace

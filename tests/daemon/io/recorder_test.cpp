@@ -257,6 +257,7 @@ TEST_F(RecorderTest, GoesOnInANewFileWhenItsFolderIsRemoved) {
   for (int i = 0; i < 10; ++i) record(recorder, i);
   fs::remove_all(config_.folder);
   for (int i = 10; i < 30; ++i) record(recorder, i);
+  EXPECT_EQ(recorder.status().removed_records, 10);
   EXPECT_EQ(recorder.finish(), 10) << "what was in the removed log is on no disk";
   ASSERT_EQ(logs_in(config_.folder).size(), 1U);
   const auto events = read_events(logs_in(config_.folder)[0]);
