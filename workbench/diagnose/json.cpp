@@ -7,6 +7,7 @@
 #include "workbench/diagnose/learned_curves.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/words.h"
+#include "workbench/present/disturbance_json.h"
 #include "workbench/present/held_scale_json.h"
 #include "workbench/present/json.h"
 #include "workbench/present/resonance_json.h"
@@ -80,24 +81,6 @@ ordered_json changing_of(const selection::Diagnosis& d) {
          {"rivals", change.rivals}});
   }
   return changes;
-}
-
-ordered_json disturbance_of(const selection::Diagnosis& d) {
-  if (!d.disturbance) return nullptr;
-  ordered_json json;
-  json["rms_m"] = number_or_null(d.disturbance->rms_m);
-  json["share"] = number_or_null(d.disturbance->share);
-  json["as"] = d.disturbance->as;
-  json["value"] = number_or_null(d.disturbance->value);
-  json["corner_Hz"] = number_or_null(d.disturbance->corner_Hz);
-  json["lines"] = ordered_json::array();
-  for (const selection::DisturbanceLine& line : d.disturbance->lines) {
-    json["lines"].push_back({{"frequency_Hz", number_or_null(line.frequency_Hz)},
-                             {"as", line.as},
-                             {"amplitude", number_or_null(line.amplitude)},
-                             {"amplitude_m", number_or_null(std::sqrt(2.0) * line.rms_m)}});
-  }
-  return json;
 }
 
 ordered_json numbers_of(const std::vector<double>& values) {
@@ -200,7 +183,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["changing"] = changing_of(d);
   json["laws"] = laws_of(outcome);
   json["resonance"] = present::resonance_json(outcome.resonance);
-  json["disturbance"] = disturbance_of(d);
+  json["disturbance"] = present::disturbance_json(d.disturbance);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},
       {"repeat_m", number_or_null(d.repetition ? d.repetition->scatter_m : std::nan(""))},

@@ -10,10 +10,10 @@
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
 #include "workbench/diagnose/change_words.h"
-#include "workbench/diagnose/disturbance_words.h"
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/place_words.h"
 #include "workbench/diagnose/record_words.h"
+#include "workbench/present/disturbance_words.h"
 #include "workbench/present/dynamics_plots.h"
 #include "workbench/present/shell_command.h"
 
@@ -283,7 +283,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (d.disturbance) {
     out.push_back("What remains does not follow from command or motion: " +
-                  disturbance_words(*d.disturbance) + ".");
+                  present::disturbance_words(*d.disturbance) + ".");
   }
   if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));
   if (!d.possible.empty()) {

@@ -1,4 +1,4 @@
-#include "workbench/diagnose/disturbance_words.h"
+#include "workbench/present/disturbance_words.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 
-namespace workbench::diagnose {
+namespace workbench::present {
 
 namespace selection = estimator::greybox::selection;
 namespace {
@@ -50,4 +50,4 @@ std::string disturbance_words(const selection::Disturbance& disturbance) {
   return config::schema::listed(parts);
 }
 
-}  // namespace workbench::diagnose
+}  // namespace workbench::present
