@@ -1,10 +1,12 @@
 // `spoolwatch compare MODEL.toml RECORD`: where a model fails against a measurement, as text, JSON
 // and a report.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "config/messages/channels.h"
@@ -111,17 +113,20 @@ void run(CompareArguments& a) {
   const present::PrintedAxis axis(present::motion_of(prepared.model));
   const validation::Comparison comparison =
       validation::compare(prepared.model, prepared.record, a.request.observer_per_s);
+  const compare::DisturbanceCheck check = compare::check_disturbance(
+      prepared.model, comparison, std::max(1U, std::thread::hardware_concurrency()));
   files::write_all({[&] {
                       if (!a.residuals.empty())
                         write_residuals(comparison, prepared.model, prepared.units, a);
                     },
                     [&] {
                       if (a.report.empty()) return;
-                      present::write_report(compare::make_report(comparison, a.command), a.report);
+                      present::write_report(compare::make_report(comparison, a.command, check),
+                                            a.report);
                     },
                     [&] {
-                      if (present::write_json(compare::to_json(comparison), a.json)) return;
-                      std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
+                      if (present::write_json(compare::to_json(comparison, check), a.json)) return;
+                      std::cout << compare::to_text(comparison, utf8_terminal(), a.all, check);
                     }});
 }
 

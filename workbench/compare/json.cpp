@@ -1,7 +1,10 @@
 #include "workbench/compare/comparison_report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "workbench/present/disturbance_json.h"
 #include "workbench/present/json.h"
 #include "workbench/present/resonance_json.h"
 
@@ -39,8 +42,8 @@ const char* to_string(Judgement judgement) {
 
 }  // namespace
 
-std::string to_json(const validation::Comparison& c) {
-  const Words said = words(c);
+std::string to_json(const validation::Comparison& c, const DisturbanceCheck& check) {
+  const Words said = words(c, check);
   ordered_json out;
   out["model"] = c.model;
   out["record"] = c.record.name;
@@ -63,6 +66,9 @@ std::string to_json(const validation::Comparison& c) {
   out["worst"] = ordered_json::array();
   for (const validation::SignificantRegion& failing : c.worst)
     out["worst"].push_back(json_of(failing));
+  out["disturbance"] = present::disturbance_json(
+      check.found ? std::optional(check.found->disturbance) : std::nullopt);
+  out["disturbed_floor_m"] = number_or_null(check.found ? check.found->floor_m : std::nan(""));
   out["resonance"] = present::resonance_json(c.resonance);
   out["gain_ratio"] = number_or_null(c.systematic.gain_ratio);
   out["offset_mps"] = number_or_null(c.systematic.offset_mps);

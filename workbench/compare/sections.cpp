@@ -194,7 +194,7 @@ Section dynamics_section(const validation::Comparison& c) {
   return section;
 }
 
-present::Table number_table(const validation::Comparison& c) {
+present::Table number_table(const validation::Comparison& c, const DisturbanceCheck& check) {
   present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
   const std::string gain = units::three_digits(c.observer_per_s);
@@ -211,6 +211,10 @@ present::Table number_table(const validation::Comparison& c) {
     table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", units::length_words(k.rms_m),
                           "position put on the measured one that many samples before"});
   }
+  if (check.found) {
+    table.rows.push_back({"sensor and disturbance", units::length_words(check.found->floor_m),
+                          "error that they cause, whatever the model"});
+  }
   table.rows.push_back({"noise floor", units::length_words(c.noise_floor_m),
                         "noise and rounding of the position, from its own samples"});
   table.rows.push_back({"whiteness p", units::chance_words(c.whiteness_p),
@@ -220,10 +224,10 @@ present::Table number_table(const validation::Comparison& c) {
   return table;
 }
 
-Section number_section(const validation::Comparison& c) {
+Section number_section(const validation::Comparison& c, const DisturbanceCheck& check) {
   Section section;
   section.heading = "The numbers and how they are computed";
-  section.tables.push_back(number_table(c));
+  section.tables.push_back(number_table(c, check));
   section.paragraphs.push_back(
       "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
       "side. At rest: below " +
@@ -238,13 +242,15 @@ Section number_section(const validation::Comparison& c) {
 
 }  // namespace
 
-std::vector<Section> sections(const validation::Comparison& c, const std::string& prefix) {
+std::vector<Section> sections(const validation::Comparison& c, const std::string& prefix,
+                              const DisturbanceCheck& check) {
   return {time_section(c, prefix), where_section(c), against_section(c), dynamics_section(c),
-          number_section(c)};
+          number_section(c, check)};
 }
 
-present::Report make_report(const validation::Comparison& c, const std::string& command) {
-  const Words said = words(c);
+present::Report make_report(const validation::Comparison& c, const std::string& command,
+                            const DisturbanceCheck& check) {
+  const Words said = words(c, check);
   present::Report made;
   made.title = c.model + " against " + std::filesystem::path(c.record.name).filename().string();
   made.verdict = said.verdict;
@@ -259,12 +265,13 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
     made.facts.push_back({label, said_so.substr(0, gap), said_so.substr(gap + 1)});
   };
   fact("drift-corrected RMS", c.rms_m);
+  if (check.found) fact("sensor and disturbance", check.found->floor_m);
   fact("noise floor", c.noise_floor_m);
   fact("free-run RMS", c.free_run_rms_m);
   made.facts.push_back({"fit of the free run", units::three_digits(c.fit_percent), "%"});
   fact("one-step prediction, RMS", c.k_step.front().rms_m);
   made.command = command;
-  made.sections = sections(c);
+  made.sections = sections(c, "", check);
   return made;
 }
 

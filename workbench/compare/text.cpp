@@ -51,7 +51,7 @@ std::string bar(double share, bool unicode) {
   return text + kParts[eighths % 8];
 }
 
-std::string numbers(const validation::Comparison& c) {
+std::string numbers(const validation::Comparison& c, const DisturbanceCheck& check) {
   std::string out;
   const auto row = [&](const std::string& name, const std::string& value,
                        const std::string& beside) {
@@ -71,6 +71,10 @@ std::string numbers(const validation::Comparison& c) {
     row(fmt::format("{}-step prediction", k.samples), units::length_words(k.rms_m),
         k.count == 0 ? "no stretch is long enough"
                      : "over " + units::three_digits(1e3 * ahead_s) + " ms");
+  }
+  if (check.found) {
+    row("sensor, disturbance", units::length_words(check.found->floor_m),
+        times_floor(check.found->floor_m));
   }
   row("noise floor", units::length_words(c.noise_floor_m),
       c.encoder_step_m > 0.0 ? "encoder step " + units::length_words(c.encoder_step_m) : "");
@@ -123,8 +127,9 @@ std::vector<const validation::Region*> shown(const validation::Comparison& c, bo
 
 }  // namespace
 
-std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
-  const Words said = words(c);
+std::string to_text(const validation::Comparison& c, bool unicode, bool all,
+                    const DisturbanceCheck& check) {
+  const Words said = words(c, check);
   std::string out = fmt::format("{} against {}: {} s, {} samples at {} Hz", c.model, c.record.name,
                                 units::three_digits(c.duration_s()), c.record.size(),
                                 units::three_digits(1.0 / c.record.sample_time_s));
@@ -133,7 +138,7 @@ std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
   for (const std::string& note : notes(c)) out += wrapped("note: " + note, "  ", "        ");
   out += "\n" + wrapped(said.verdict, "  ", "  ");
   for (const std::string& sentence : said.lines) out += wrapped(sentence, "  - ", "    ");
-  out += "\n" + numbers(c);
+  out += "\n" + numbers(c, check);
   if (said.judgement == Judgement::useless) return out;
   const bool noise = said.judgement == Judgement::at_floor;
   for (const validation::Region* region : shown(c, all)) {

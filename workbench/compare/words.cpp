@@ -10,6 +10,7 @@
 #include "estimator/greybox/motion_scale.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/present/dataset_notes.h"
+#include "workbench/present/disturbance_words.h"
 #include "workbench/present/dynamics_plots.h"
 #include "workbench/present/record_findings.h"
 
@@ -144,9 +145,14 @@ std::string stroke_words(const validation::Comparison& c) {
   return present::stroke_finding(low, high, c.stroke_m, c.record.position_column);
 }
 
-std::string dependence_words(const validation::Comparison& c) {
+std::string dependence_words(const validation::Comparison& c, const DisturbanceCheck& check) {
   if (c.independence_p < kSignificant) {
     return "The residual depends on earlier commands: parameters are off or dynamics are missing.";
+  }
+  if (c.whiteness_p < kSignificant && check.asked) {
+    return "The residual is not white, and independent of the command, yet no disturbance of the "
+           "rig "
+           "accounts for it: `diagnose` seeks what does.";
   }
   if (c.whiteness_p < kSignificant) {
     return "The residual is not white, yet independent of the command: look at what acts without "
@@ -156,9 +162,26 @@ std::string dependence_words(const validation::Comparison& c) {
   return "The residual is white and independent of the command, as noise is.";
 }
 
+/// What is left is a disturbance's.
+void add_disturbance(const validation::Comparison& c,
+                     const estimator::greybox::selection::RemainingDisturbance& found, Words& w) {
+  const std::string floor = units::length_words(found.floor_m);
+  w.judgement = Judgement::at_floor;
+  w.verdict = c.rms_m <= validation::kAtFloor * found.floor_m
+                  ? "At the floor that sensor and disturbance would set, " + floor +
+                        ": what is left follows neither command nor motion."
+                  : "Above the noise floor, yet what is left follows neither command nor motion: "
+                    "sensor and "
+                    "disturbance would leave " +
+                        floor + ".";
+  w.lines.push_back("A disturbance of the rig would explain it: " +
+                    present::disturbance_words(found.disturbance) +
+                    "; `diagnose` weighs it against the effects of the library.");
+}
+
 }  // namespace
 
-Words words(const validation::Comparison& c) {
+Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
   Words w;
   const auto add = [&](const std::string& line) {
     if (!line.empty()) w.lines.push_back(line);
@@ -178,6 +201,12 @@ Words words(const validation::Comparison& c) {
     }
     return w;
   }
+  if (check.found) {
+    add_disturbance(c, *check.found, w);
+    add(size_words(c));
+    add(drift_words(c));
+    return w;
+  }
   const bool somewhere = c.headline.significant;
   const std::string plain = plain_words(c);
   if (!plain.empty()) {
@@ -187,7 +216,7 @@ Words words(const validation::Comparison& c) {
   } else if (somewhere) {
     w.judgement = Judgement::fails_somewhere;
     w.verdict = "Fails " + fails_where(c.headline);
-  } else if (c.independence_p >= kSignificant) {
+  } else if (c.independence_p >= kSignificant && !check.asked) {
     w.verdict =
         "Above the noise floor, yet nothing that is left follows the command, position, velocity "
         "or "
@@ -198,7 +227,7 @@ Words words(const validation::Comparison& c) {
   add(size_words(c));
   add(drift_words(c));
   if (c.resonance) add(present::resonance_words(*c.resonance));
-  add(dependence_words(c));
+  add(dependence_words(c, check));
   return w;
 }
 
