@@ -21,7 +21,7 @@ constexpr double kSpare = 1.2;
 }  // namespace
 
 MotionRatio motion_ratio(const Dataset& record, const std::vector<double>& error_m,
-                         double observer_per_s) {
+                         double observer_per_s, PlantStart start) {
   const auto n = static_cast<Eigen::Index>(record.size());
   Eigen::MatrixXd modelled = Eigen::MatrixXd::Zero(n, 2);
   Eigen::VectorXd measured = Eigen::VectorXd::Zero(n);
@@ -36,7 +36,7 @@ MotionRatio motion_ratio(const Dataset& record, const std::vector<double>& error
         measured(row) = by_rod;
       }
       if (k + 1 == span.end) break;
-      const double kept = 1.0 - record.observer_gain(k, observer_per_s);
+      const double kept = 1.0 - record.observer_gain(k, observer_per_s, start).position;
       const double step_m = record.y_m[k + 1] - record.y_m[k];
       by_model = kept * by_model + step_m - (error_m[k + 1] - kept * error_m[k]);
       by_one = kept * by_one + record.sample_time_s;

@@ -20,9 +20,10 @@ struct MotionRatio {
 
 enum class ScaleError { none, thousandfold, thousandth };
 
-/// `error_m`: measured less modelled position under the observer, one per sample.
+/// `error_m`: measured less modelled position under the observer, one per sample, of a model that
+/// starts as `start` says.
 [[nodiscard]] MotionRatio motion_ratio(const Dataset& record, const std::vector<double>& error_m,
-                                       double observer_per_s);
+                                       double observer_per_s, PlantStart start);
 
 /// Motions that follow the model's, but are about 1000 times as far, or a thousandth.
 [[nodiscard]] ScaleError scale_error(const MotionRatio& motion) noexcept;

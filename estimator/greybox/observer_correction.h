@@ -16,6 +16,13 @@
 
 namespace estimator::greybox {
 
+/// Speeds at which the ensemble's plant can begin.
+[[nodiscard]] inline PlantStart plant_start(const plant_sim::Ensemble& ensemble) {
+  return ensemble.find_state("v_mps") && !ensemble.find_state("pressure_in_Pa")
+             ? PlantStart::any_speed
+             : PlantStart::held_by_oil;
+}
+
 class ObserverCorrection {
  public:
   using Ensemble = plant_sim::Ensemble;
@@ -23,7 +30,7 @@ class ObserverCorrection {
   /// `record` must outlive it.
   ObserverCorrection(const Ensemble& ensemble, const Dataset& record, double observer_per_s)
       : record_(record), observer_per_s_(observer_per_s) {
-    if (!ensemble.find_state("pressure_in_Pa")) speed_ = ensemble.find_state("v_mps");
+    if (plant_start(ensemble) == PlantStart::any_speed) speed_ = ensemble.find_state("v_mps");
   }
 
   [[nodiscard]] ObserverGain gain(std::size_t k) const noexcept {

@@ -36,6 +36,8 @@ ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const 
   }
 }
 
+PlantStart ObserverSimulation::plant_start() const { return greybox::plant_start(*ensemble_); }
+
 void ObserverSimulation::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
   run(points, {}, {}, residuals_m, nullptr);
 }

@@ -56,6 +56,7 @@ class ObserverSimulation {
 
   [[nodiscard]] const std::vector<FreeParameter>& parameters() const { return parameters_; }
   [[nodiscard]] std::size_t size() const { return record_->size(); }
+  [[nodiscard]] PlantStart plant_start() const;
   /// Scaled innovations with gains of their own in each lane, size() x points.cols(); no lines are
   /// projected out. Every element of `gains` has the states of the first.
   void innovations(const Eigen::MatrixXd& points, std::span<const InnovationGains> gains,

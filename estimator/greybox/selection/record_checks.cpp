@@ -154,7 +154,7 @@ GivenMotion motion_of(const plant_sim::ModelFile& model, const Dataset& record) 
   Eigen::MatrixXd residual_m;
   run.residuals(Eigen::MatrixXd(0, 1), residual_m);
   const std::vector<double> error_m(residual_m.data(), residual_m.data() + residual_m.rows());
-  return {motion_ratio(record, error_m, kObserver_per_s),
+  return {motion_ratio(record, error_m, kObserver_per_s, run.plant_start()),
           residual_m.norm() / std::sqrt(static_cast<double>(residual_m.rows()))};
 }
 

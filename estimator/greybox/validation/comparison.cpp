@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
@@ -39,8 +40,12 @@ std::vector<double> broken(const Dataset& record, const std::vector<double>& val
   return series;
 }
 
-std::vector<double> run(const plant_sim::ModelFile& model, const Dataset& record,
-                        double observer_per_s) {
+struct Run {
+  std::vector<double> errors_m;
+  PlantStart start;
+};
+
+Run run(const plant_sim::ModelFile& model, const Dataset& record, double observer_per_s) {
   Dataset all = record;
   std::fill(all.valid.begin(), all.valid.end(), char{1});
   ObserverSimulation run(model, all, {}, observer_per_s);
@@ -50,7 +55,7 @@ std::vector<double> run(const plant_sim::ModelFile& model, const Dataset& record
   for (std::size_t k = 0; k < errors_m.size(); ++k) {
     errors_m[k] = residual_m(static_cast<Eigen::Index>(k), 0);
   }
-  return errors_m;
+  return {std::move(errors_m), run.plant_start()};
 }
 
 double rms(const std::vector<double>& values, const std::vector<char>& counts) {
@@ -119,11 +124,11 @@ void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
   }
 }
 
-void find_speed_error(Comparison& c) {
+void find_speed_error(Comparison& c, PlantStart start) {
   c.speed_error_mps.assign(c.record.size(), 0.0);
   for (const SampleRange& span : segments(c.record)) {
     for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
-      const double kept = 1.0 - c.record.observer_gain(k, c.observer_per_s);
+      const double kept = 1.0 - c.record.observer_gain(k, c.observer_per_s, start).position;
       c.speed_error_mps[k] = (c.error_m[k + 1] - kept * c.error_m[k]) / c.record.sample_time_s;
     }
   }
@@ -179,8 +184,10 @@ double Comparison::duration_s() const {
 ModelErrors errors_of(const plant_sim::ModelFile& model, const Dataset& record,
                       double observer_per_s) {
   ModelErrors errors;
-  errors.error_m = run(model, record, observer_per_s);
-  errors.free_error_m = run(model, record, 0.0);
+  Run observed = run(model, record, observer_per_s);
+  errors.start = observed.start;
+  errors.error_m = std::move(observed.errors_m);
+  errors.free_error_m = run(model, record, 0.0).errors_m;
   errors.rms_m = rms(errors.error_m, record.valid);
   errors.free_run_rms_m = rms(errors.free_error_m, std::vector<char>(record.size(), 1));
   errors.fit_percent = 100.0 * (1.0 - errors.free_run_rms_m / spread(record.y_m));
@@ -212,9 +219,10 @@ Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
   c.independence_p =
       estimator::residual::independence(residual, broken(record, record.u_V, false)).p;
   c.kinematics = greybox::kinematics(record, std::isfinite(floor.sd_m) ? floor.sd_m : 0.0);
-  find_speed_error(c);
-  c.systematic = systematic_error(record, c.error_m, c.speed_error_mps, observer_per_s);
-  c.motion = motion_ratio(record, c.error_m, observer_per_s);
+  find_speed_error(c, errors.start);
+  c.systematic =
+      systematic_error(record, c.error_m, c.speed_error_mps, observer_per_s, errors.start);
+  c.motion = motion_ratio(record, c.error_m, observer_per_s, errors.start);
   c.response = command_response(record.sample_time_s, record.u_V, record.y_m, record.starts);
   c.resonance = missing_resonance(record, c.free_error_m, c.noise_floor_m);
   find_arising(c);

@@ -86,6 +86,7 @@ struct Comparison {
 
 /// The errors of a model alone, as a Comparison has them.
 struct ModelErrors {
+  PlantStart start = PlantStart::held_by_oil;  ///< the model's
   std::vector<double> error_m;
   std::vector<double> free_error_m;
   double rms_m = 0.0;

@@ -23,8 +23,8 @@ double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen:
 }  // namespace
 
 SystematicError systematic_error(const Dataset& record, const std::vector<double>& error_m,
-                                 const std::vector<double>& speed_error_mps,
-                                 double observer_per_s) {
+                                 const std::vector<double>& speed_error_mps, double observer_per_s,
+                                 PlantStart start) {
   const auto n = static_cast<Eigen::Index>(record.size());
   Eigen::MatrixXd signatures = Eigen::MatrixXd::Zero(n, 2);
   Eigen::VectorXd e = Eigen::VectorXd::Zero(n);
@@ -40,7 +40,7 @@ SystematicError systematic_error(const Dataset& record, const std::vector<double
       if (k + 1 == span.end) break;
       const double modelled_m =
           record.y_m[k + 1] - record.y_m[k] - speed_error_mps[k] * record.sample_time_s;
-      const double kept = 1.0 - record.observer_gain(k, observer_per_s);
+      const double kept = 1.0 - record.observer_gain(k, observer_per_s, start).position;
       by_speed = kept * by_speed + modelled_m;
       by_one = kept * by_one + record.sample_time_s;
     }

@@ -22,9 +22,10 @@ struct SystematicError {
   double left_rms_m = 0.0;  ///< error without that share
 };
 
+/// `start` of the model that left the error.
 [[nodiscard]] SystematicError systematic_error(const Dataset& record,
                                                const std::vector<double>& error_m,
                                                const std::vector<double>& speed_error_mps,
-                                               double observer_per_s);
+                                               double observer_per_s, PlantStart start);
 
 }  // namespace estimator::greybox::validation

@@ -28,7 +28,7 @@ MotionRatio ratio(double factor, double other) {
     const double kept = 1.0 - record.observer_gain(k, kObserver);
     error_m.push_back(kept * error_m[k] + y[k + 1] - y[k] - modelled[k + 1] + modelled[k]);
   }
-  return motion_ratio(record, error_m, kObserver);
+  return motion_ratio(record, error_m, kObserver, PlantStart::held_by_oil);
 }
 
 TEST(MotionScale, IsTheFactorBetweenTheMotions) {
