@@ -65,6 +65,7 @@ constexpr std::array kRecord{
     Word{"gain", "record the supply pressure and the spool position"},
     Word{"force", "record the chamber pressures"},
     Word{"measurement", "record the position with a second sensor"},
+    Word{"lag", "record the spool position or the drive's own speed, which shows a lag ahead of it"},
 };
 
 constexpr std::array kDrift{
@@ -87,6 +88,7 @@ constexpr std::array kAxisRecord{
     Word{"gain", "record the motor's current"},
     Word{"force", "record the force with a load cell, or the motor's current"},
     Word{"measurement", "record the position with a second sensor"},
+    Word{"lag", "record the motor's own speed, which shows a lag of the drive"},
 };
 
 constexpr std::array kAxisDrift{
@@ -127,6 +129,21 @@ std::string formula_words(const selection::Localisation& where, const std::strin
   if (variable.empty() || !has_site(plant, site)) return "";
   return "or write it as a formula of " + variable + " ([formula_effects.NAME], site = \"" + site +
          "\") and diagnose again";
+}
+
+/// What would tell the sites of a place apart, each measurement once.
+std::string words_to_locate(const selection::Localisation& where, bool axis) {
+  std::vector<std::string> sites{where.site};
+  sites.insert(sites.end(), where.or_sites.begin(), where.or_sites.end());
+  std::vector<std::string> measured;
+  for (const std::string& site : sites) {
+    const std::string words = of(axis ? kAxisRecord : kRecord, site);
+    if (std::find(measured.begin(), measured.end(), words) == measured.end()) {
+      measured.push_back(words);
+    }
+  }
+  return std::string("For an error that goes ") + of(kVariables, where.variable) +
+         " and may enter in several places: " + config::schema::joined(measured, "; ") + ".";
 }
 
 }  // namespace
@@ -225,11 +242,12 @@ std::string words_for_unexplained(const std::vector<selection::Localisation>& wh
                  : "the chamber pressures and the spool position.");
   }
   const selection::Localisation& first = where.front();
+  if (!first.or_sites.empty()) return words_to_locate(first, axis);
   std::string text = std::string("For an error that goes ") + of(kVariables, first.variable) +
                      " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + ": ";
   const auto& drift = axis ? kAxisDrift : kDrift;
   const auto& record = axis ? kAxisRecord : kRecord;
-  text += of(first.variable == "time" ? drift : record, first.site);
+  text += first.variable == "time" ? of(drift, first.site) : of(record, first.site);
   const std::string formula = formula_words(first, plant);
   if (!formula.empty()) text += ", " + formula;
   return text + ".";

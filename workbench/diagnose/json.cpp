@@ -167,7 +167,8 @@ std::string to_json(const DiagnosisReport& outcome) {
   for (const selection::Localisation& where : d.where) {
     json["where"].push_back({{"class", where.site},
                              {"variable", where.variable},
-                             {"explained_ratio", number_or_null(where.explained_ratio)}});
+                             {"explained_ratio", number_or_null(where.explained_ratio)},
+                             {"or_class", where.or_sites}});
   }
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
                     {"outside_stroke", d.checks && d.checks->outside_stroke()},

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string_view>
 
+#include "estimator/greybox/disturbance/noise_model.h"
+#include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/residual_input.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
@@ -20,25 +22,39 @@ using Eigen::VectorXd;
 constexpr double kFreedom = 30.0;
 /// Least decrease of the remaining error per additional piece.
 constexpr double kPerPiece = 0.002;
+/// The remaining squared error of another site over that of the best, up to which the record does
+/// not tell the two: what is left is a fault of the curves as well as of the place.
+constexpr double kToldApart = 2.0;
 /// Share of the remaining error by which the command must be better than a motion to be what a
 /// force follows: a command reaches the load through the valve or the motor alone.
 constexpr double kCommandAsForce = 1.25;
 
-/// Response of the observer to an addition to the reading; independent of the model.
-MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
+/// Response of the observer to an addition to the reading, by the linearised model: on an axis
+/// driven by force, the observer finds the speed too while a segment settles.
+MatrixXd seen_by_observer(const SearchContext& context, const disturbance::Linearisations& linear,
+                          MatrixXd added) {
   for (Index column = 0; column < added.cols(); ++column) {
     Index at = 0;
-    for (const Dataset& record : context.problem.data.records) {
+    for (std::size_t r = 0; r < linear.size(); ++r) {
+      const Dataset& record = context.problem.data.records[r];
+      const disturbance::Linearisation& model = linear[r];
+      const PlantStart start = disturbance::start_of(model.states);
+      const auto speed = std::find(model.states.begin(), model.states.end(), "v_mps");
+      disturbance::StateVector shifted = disturbance::StateVector::Zero();
       std::size_t segment = 0;
-      double shifted_m = 0.0;
       for (std::size_t k = 0; k < record.size(); ++k, ++at) {
         double& seen = added(at, column);
         if (segment < record.starts.size() && record.starts[segment] == k) {
-          shifted_m = -seen;  // the model starts where its reading equals the measured one
+          shifted.setZero();
+          shifted[0] = -seen;  // the model starts where its reading equals the measured one
           ++segment;
         }
-        seen += shifted_m;
-        shifted_m -= record.observer_gain(k, kObserver_per_s) * seen;
+        seen += shifted[0];
+        const ObserverGain gain = record.observer_gain(k, kObserver_per_s, start);
+        shifted[0] -= gain.position * seen;
+        if (gain.speed_per_s > 0.0)
+          shifted[speed - model.states.begin()] -= gain.speed_per_s * seen;
+        shifted = model.transition[k] * shifted;
         seen *= record.valid[k] != 0 ? -1.0 : 0.0;
       }
     }
@@ -46,11 +62,31 @@ MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
   return added;
 }
 
+/// The model's speed, acceleration and jerk, per sample: what a short lag adds to the reading.
+MatrixXd shifts_by_lag(const SearchContext& context, const VectorXd& speed_mps) {
+  MatrixXd shifts = MatrixXd::Zero(speed_mps.size(), 3);
+  shifts.col(0) = speed_mps;
+  for (Index order = 1; order < shifts.cols(); ++order) {
+    Index at = 0;
+    for (const Dataset& record : context.problem.data.records) {
+      for (const SampleRange& span : segments(record)) {
+        for (std::size_t k = span.begin + 1; k + 1 < span.end; ++k) {
+          const Index row = at + static_cast<Index>(k);
+          shifts(row, order) = 0.5 * (shifts(row + 1, order - 1) - shifts(row - 1, order - 1));
+        }
+      }
+      at += static_cast<Index>(record.size());
+    }
+  }
+  return shifts;
+}
+
 /// d residual / d input.
 MatrixXd signatures(const SearchContext& context, const ModelStage& stage,
-                    const ResidualVariables& all, const Variable& variable, ResidualInput input) {
+                    const disturbance::Linearisations& linear, const ResidualVariables& all,
+                    const Variable& variable, ResidualInput input) {
   if (input == ResidualInput::reading || input == ResidualInput::scale) {
-    return seen_by_observer(context, input_values(all, variable, input));
+    return seen_by_observer(context, linear, input_values(all, variable, input));
   }
   return input_responses(context, stage.fitted, all, variable, input);
 }
@@ -119,7 +155,26 @@ struct LocalisationTrial {
   ResidualInput input;
   std::size_t variable;
   double remaining_ratio = std::numeric_limits<double>::infinity();
+  double paid_ratio = std::numeric_limits<double>::infinity();  ///< its pieces paid for
 };
+
+/// A site and the least that it leaves unexplained.
+struct SiteTrial {
+  std::string site;
+  double paid_ratio;
+};
+
+/// Sites other than `site` that leave less than kToldApart times `paid_ratio`; `sites` best first.
+std::vector<std::string> not_told_apart(const std::vector<SiteTrial>& sites,
+                                        const std::string& site, double paid_ratio) {
+  std::vector<std::string> others;
+  for (const SiteTrial& other : sites) {
+    const bool known =
+        other.site == site || std::find(others.begin(), others.end(), other.site) != others.end();
+    if (!known && other.paid_ratio < kToldApart * paid_ratio) others.push_back(other.site);
+  }
+  return others;
+}
 
 }  // namespace
 
@@ -131,25 +186,40 @@ std::vector<Localisation> localise(const SearchContext& context, const ModelStag
   for (std::size_t i = 0; i < variables.all.size(); ++i) {
     for (const ResidualInput input : inputs) attempts.push_back({input, i});
   }
+  const disturbance::Linearisations linear = disturbance::linearise(
+      context.problem.model, context.problem.data, stage.fitted.parameters, stage.fitted.theta);
+  const auto remaining_ratio = [&](const MatrixXd& found) {
+    return SignatureRegression(context.problem.data, stage.fitted, found).remaining_ratio();
+  };
+  const auto paid = [](double ratio, Index pieces) {
+    return ratio * (1.0 + kPerPiece * static_cast<double>(pieces));
+  };
   in_parallel(attempts.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;
-    LocalisationTrial& refine = attempts[i];
-    const MatrixXd found =
-        signatures(context, stage, variables, variables.all[refine.variable], refine.input);
+    LocalisationTrial& trial = attempts[i];
+    const Variable& variable = variables.all[trial.variable];
+    const MatrixXd found = signatures(context, stage, linear, variables, variable, trial.input);
     if (!found.allFinite()) return;
-    refine.remaining_ratio =
-        SignatureRegression(context.problem.data, stage.fitted, found).remaining_ratio();
+    trial.remaining_ratio = remaining_ratio(found);
+    const bool remote = std::string_view(site_of(trial.input)) == "force" && variable.name == "u";
+    trial.paid_ratio =
+        paid(trial.remaining_ratio, variable.pieces.cols()) * (remote ? kCommandAsForce : 1.0);
   });
   if (context.cancelled()) return {};
-  const auto paid = [&](const LocalisationTrial& a) {
-    const auto pieces = static_cast<double>(variables.all[a.variable].pieces.cols());
-    const bool remote =
-        std::string_view(site_of(a.input)) == "force" && variables.all[a.variable].name == "u";
-    return a.remaining_ratio * (1.0 + kPerPiece * pieces) * (remote ? kCommandAsForce : 1.0);
-  };
-  std::stable_sort(
-      attempts.begin(), attempts.end(),
-      [&](const LocalisationTrial& a, const LocalisationTrial& b) { return paid(a) < paid(b); });
+  std::stable_sort(attempts.begin(), attempts.end(),
+                   [](const LocalisationTrial& a, const LocalisationTrial& b) {
+                     return a.paid_ratio < b.paid_ratio;
+                   });
+  std::vector<SiteTrial> sites;
+  for (const LocalisationTrial& a : attempts) {
+    if (std::isfinite(a.paid_ratio)) sites.push_back({site_of(a.input), a.paid_ratio});
+  }
+  const MatrixXd lag =
+      seen_by_observer(context, linear, shifts_by_lag(context, variables.speed_mps));
+  if (lag.allFinite()) sites.push_back({"lag", paid(remaining_ratio(lag), lag.cols())});
+  std::stable_sort(sites.begin(), sites.end(), [](const SiteTrial& a, const SiteTrial& b) {
+    return a.paid_ratio < b.paid_ratio;
+  });
   std::vector<Localisation> result;
   for (const LocalisationTrial& a : attempts) {
     const std::string& name = variables.all[a.variable].name;
@@ -157,7 +227,9 @@ std::vector<Localisation> localise(const SearchContext& context, const ModelStag
       return where.variable == name;
     });
     if (named || !std::isfinite(a.remaining_ratio)) continue;
-    result.push_back({site_of(a.input), name, 1.0 - a.remaining_ratio});
+    const std::string site = site_of(a.input);
+    result.push_back(
+        {site, name, 1.0 - a.remaining_ratio, not_told_apart(sites, site, a.paid_ratio)});
   }
   return result;
 }

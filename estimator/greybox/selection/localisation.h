@@ -13,6 +13,10 @@
 //
 // and the model, simulated with it, gives s_i; for the reading the observer alone responds, with
 // s / (s + l). a and b are fitted to the training samples and scored on the others.
+//
+// A lag between command and reading shifts the reading by a polynomial of the rod's speed,
+// acceleration and jerk, as an error of the measurement that goes with these does: from command and
+// position the two are one.
 #pragma once
 
 #include <string>
@@ -28,6 +32,9 @@ struct Localisation {
   std::string site;              ///< "flow", "force", "gain", "measurement"
   std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
   double explained_ratio = 0.0;  ///< share of the held-out squared error
+  /// Other sites that explain about as much, with this variable or another, best first; "lag": one
+  /// between command and reading. The record does not tell `site` from these.
+  std::vector<std::string> or_sites = {};
 };
 
 /// One entry per variable, with the site that explains most, best first; among about equal entries

@@ -148,11 +148,27 @@ TEST(AdviceForUnexplained, LeavesOutReadingsThatLeapFirst) {
   EXPECT_THAT(d.advice, Not(HasSubstr("formula")));
 }
 
+TEST(Advice, ForAPlaceThatIsNotToldNamesWhatTellsEach) {
+  const std::string text = advice_for_unexplained({{"measurement", "y", 0.83, {"gain", "force"}}});
+  for (const char* measured : {"second sensor", "supply pressure", "chamber pressures"}) {
+    EXPECT_THAT(text, HasSubstr(measured));
+  }
+  EXPECT_THAT(text, Not(HasSubstr("enters like")));
+  EXPECT_THAT(text, Not(HasSubstr("formula")));
+  const std::string axis =
+      advice_for_unexplained({{"measurement", "speed", 0.79, {"lag"}}}, "velocity_servo");
+  EXPECT_THAT(axis, HasSubstr("lag"));
+  const std::string once =
+      advice_for_unexplained({{"flow", "u", 0.9, {"gain"}}}, "force_driven_axis");
+  EXPECT_EQ(once.find("current"), once.rfind("current")) << once;
+}
+
 TEST(Advice, NamesNoValveAndNoChambersWhereThePlantHasNone) {
   for (const char* enters : {"flow", "gain", "force", "measurement"}) {
     for (const char* variable : {"v", "u", "time"}) {
       const std::string text =
-          advice_for_unexplained({{enters, variable, 0.9}}, "force_driven_axis");
+          advice_for_unexplained({{enters, variable, 0.9}}, "force_driven_axis") +
+          advice_for_unexplained({{enters, variable, 0.9, {"lag"}}}, "force_driven_axis");
       for (const char* word : {"valve", "chamber", "spool", "oil", "opening"}) {
         EXPECT_EQ(text.find(word), std::string::npos) << text;
       }

@@ -22,7 +22,7 @@ using testing::Not;
 TEST(DiagnosisJson, HasThePublishedKeysInSi) {
   ExampleReport outcome;
   outcome.diagnosis.ambiguous = {{"friction", "backlash"}};
-  outcome.diagnosis.where = {{"force", "speed", 0.62}};
+  outcome.diagnosis.where = {{"force", "speed", 0.62, {"lag"}}};
   const json j = json::parse(to_json(outcome));
   EXPECT_EQ(j["verdict"], "missing");
   EXPECT_EQ(j["missing"], json({"friction"}));
@@ -40,8 +40,8 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
   EXPECT_EQ(j["candidates"][0]["rms_heldout_m"], 2.7e-6);
   EXPECT_EQ(j["candidates"][0]["p_value"], 1e-12);
   EXPECT_EQ(j["candidates"][2]["rms_heldout_m"], nullptr);  // never fitted
-  EXPECT_EQ(j["where"][0],
-            json::parse(R"({"class": "force", "variable": "speed", "explained_ratio": 0.62})"));
+  EXPECT_EQ(j["where"][0], json::parse(R"({"class": "force", "variable": "speed",
+                                           "explained_ratio": 0.62, "or_class": ["lag"]})"));
   EXPECT_EQ(j["steps"][0]["added"], nullptr);
   EXPECT_EQ(j["steps"][1]["added"], "friction");
   EXPECT_EQ(j["steps"][1]["rms_heldout_m"], 2.7e-6);

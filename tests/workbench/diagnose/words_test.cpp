@@ -97,6 +97,36 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   EXPECT_THAT(verdict_words(d), HasSubstr("Unexplained: an error of 12 um"));
 }
 
+TEST(Words, NameNoPlaceWhereOthersExplainAboutAsMuch) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::unexplained;
+  d.missing.clear();
+  d.where = {{"measurement", "y", 0.83, {"gain", "force"}}, {"measurement", "acceleration", 0.06}};
+  EXPECT_THAT(remarks(outcome),
+              Contains("The remaining error goes with the position y (83 % of its square), or with "
+                       "the acceleration (6 %); the record cannot tell whether it enters as an "
+                       "error of the measurement, as a change of the gain or as a force."));
+  d.where = {{"measurement", "speed", 0.79, {"lag"}}};
+  EXPECT_THAT(remarks(outcome),
+              Contains("The remaining error goes with the speed (79 % of its square); the record "
+                       "cannot tell whether it enters as an error of the measurement or as a lag "
+                       "between command and reading."));
+}
+
+TEST(Words, LeaveThePlaceOfAChangeToTheChange) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::changing;
+  d.missing.clear();
+  d.changing = {{.parameter = "damping_N_s_per_m", .at_s = 12.0, .from = 300.0, .to = 150.0}};
+  d.where_is_whole = true;
+  d.where = {{"force", "time", 0.97, {"flow"}}};
+  EXPECT_THAT(remarks(outcome),
+              Contains("The error of the model without change goes with the time (97 % of its "
+                       "square)."));
+}
+
 TEST(Words, ScatterBetweenRepetitionsIsTheFloorWhereItIsLarger) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;

@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/selection/residual_variables.h"
 #include "estimator/greybox/selection/structure_search.h"
+#include "tests/estimator/greybox/axis_in_motion.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -14,6 +16,7 @@ namespace estimator::greybox::selection {
 namespace {
 
 using testing::AnyOf;
+using testing::Contains;
 using testing::IsEmpty;
 
 std::vector<Localisation> where_of(const std::string& spec) {
@@ -42,6 +45,7 @@ TEST(Localise, NamesPositionAndForceForAStiffeningSpring) {
   EXPECT_EQ(where[0].site, "force");
   EXPECT_EQ(where[0].variable, "y");
   EXPECT_GT(where[0].explained_ratio, 0.9);
+  EXPECT_THAT(where[0].or_sites, IsEmpty());
 }
 
 TEST(Localise, NamesAccelerationForAMountThatYields) {
@@ -91,6 +95,53 @@ TEST(Localise, NamesPositionAndMeasurementForASensorWithADent) {
   ASSERT_FALSE(where.empty());
   EXPECT_EQ(where[0].site, "measurement");
   EXPECT_EQ(where[0].variable, "y");
+  EXPECT_THAT(where[0].or_sites, IsEmpty());
+}
+
+TEST(Localise, NamesPositionAndMeasurementOnAnAxisWhoseSegmentsBeginInMotion) {
+  const auto dented_m = [](double y_m) {
+    return y_m + 2e-4 * std::exp(-std::pow((y_m - 0.35) / 0.05, 2));
+  };
+  const SearchContext context{
+      make_problem(axis_in_motion::fast_axis(),
+                   fit_dataset({axis_in_motion::segments_in_motion(1.0, dented_m)}, {})),
+      {}};
+  const auto where = localise(context, first_stage(context));
+  ASSERT_FALSE(where.empty());
+  EXPECT_EQ(where[0].site, "measurement");
+  EXPECT_EQ(where[0].variable, "y");
+  EXPECT_GT(where[0].explained_ratio, 0.9);
+  EXPECT_THAT(where[0].or_sites, IsEmpty());
+}
+
+TEST(Localise, DoesNotTellALagFromAReadingThatGoesWithTheSpeed) {
+  // y' = g u(t - 10 ms), the reading right; the record's model has neither lag nor delay
+  SearchContext context =
+      servo_context([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
+  Dataset record = context.problem.data.records.front();
+  constexpr std::size_t kDelay = 2;
+  record.u_V.erase(record.u_V.begin(), record.u_V.begin() + kDelay);
+  record.y_m.resize(record.y_m.size() - kDelay);
+  record.t_s.resize(record.y_m.size());
+  record.valid.resize(record.y_m.size());
+  record.initialising.resize(record.y_m.size());
+  context.problem.data = fit_dataset({record}, {});
+  const auto where = localise(context, first_stage(context));
+  ASSERT_FALSE(where.empty());
+  EXPECT_THAT(where[0].or_sites, Contains("lag"));
+}
+
+TEST(Localise, DoesNotTellTheSiteOfFrictionAtOnePlace) {
+  // a rod that is held back about 0.3 m, whichever way it goes: neither a flow, a gain nor a dent
+  const SearchContext context = servo_context(
+      [](double u_V, double y_m, double) {
+        const double held_V = 0.2 * std::exp(-std::pow((y_m - 0.3) / 0.01, 2));
+        return 0.05 * (u_V - std::clamp(u_V, -held_V, held_V));
+      },
+      plain_reading);
+  const auto where = localise(context, first_stage(context));
+  ASSERT_FALSE(where.empty());
+  EXPECT_FALSE(where[0].or_sites.empty()) << where[0].site << " " << where[0].variable;
 }
 
 TEST(Localise, LeavesForcesOutForAPlantThatHasNone) {
