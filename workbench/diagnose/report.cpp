@@ -185,10 +185,10 @@ Section candidates_section(const DiagnosisReport& outcome) {
   section.paragraphs = {
       d.by_innovations
           ? std::string(
-                "The rig is disturbed: each round fits the most promising effects and spectral "
-                "lines, each with a noise model of its own, to the innovations. One is taken when "
-                "the likelihood says so; p is that of the likelihood ratio. The bars end at the "
-                "error of a simulation, which the disturbance dominates.")
+                "Each round fits the most promising effects and spectral lines, each with a noise "
+                "model of its own, to the innovations. One is taken when the likelihood says so; p "
+                "is that of the likelihood ratio. The bars end at the error of a simulation") +
+                (d.disturbance ? ", which the rig's disturbance dominates." : ".")
           : "Each round fits every absent effect together with all that the model has already, and "
             "scores it on held-out data. An effect is taken when it lowers that error by " +
                 fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
@@ -246,11 +246,14 @@ Section where_section(const DiagnosisReport& outcome) {
   Section section{.heading = "Where the rest enters"};
   section.paragraphs = {
       "The remaining residual, explained by smooth functions of one variable each, as a flow, a "
-      "force, a change of the gain or an error of the measurement; scored on held-out data."};
+      "force, a change of the gain or an error of the measurement; scored on held-out data. Where "
+      "several places explain about as much, the record does not tell them apart."};
   Table table{.columns = {Column{"enters", "", false}, Column{"variable", "", false},
                           Column{"explains of the squared residual", "%"}}};
   for (const selection::Localisation& where : outcome.diagnosis.where) {
-    table.rows.push_back({where.site, variable_words(where.variable),
+    std::vector<std::string> sites{where.site};
+    sites.insert(sites.end(), where.or_sites.begin(), where.or_sites.end());
+    table.rows.push_back({config::schema::listed(sites, "or"), variable_words(where.variable),
                           where.explained_ratio > 0.0
                               ? fmt::format("{:.1f}", 100.0 * where.explained_ratio)
                               : "none"});
@@ -298,7 +301,11 @@ std::vector<present::Fact> facts_of(const DiagnosisReport& outcome) {
   if (outcome.fitted()) {
     facts.push_back(length_fact("Held-out error, file", d.nominal_rms_m));
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
-    if (!d.missing.empty()) facts.push_back(length_fact("Effects added", d.rms_after_m));
+    if (d.adds_to_file()) {
+      facts.push_back(length_fact(
+          d.verdict == selection::Verdict::changing ? "With the change" : "Effects added",
+          d.rms_after_m));
+    }
   }
   if (d.repetitions_set_floor()) facts.push_back(length_fact("Between repetitions", d.floor_m()));
   if (std::isfinite(d.noise_floor_m)) facts.push_back(length_fact("Noise floor", d.noise_floor_m));

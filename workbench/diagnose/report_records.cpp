@@ -45,7 +45,7 @@ struct RecordPage {
   std::vector<std::vector<double>> free_deviated_m;  ///< NamedValues::deviated
   ResidualSource before, after;
   double noise_floor_m = kNaN;
-  bool improved = false;  ///< something was added
+  bool improved = false;  ///< an effect or a change was added
 };
 
 ResidualScale scale_of(const std::vector<double>& residual_m) {
@@ -198,7 +198,7 @@ Residuals residuals_of(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const selection::DiagnosisProblem& problem = outcome.prepared->problem;
   const selection::ModelStage& before =
-      d.search.rounds.empty() ? d.search.final : d.search.rounds.front().before;
+      d.search.path.empty() ? d.search.final : d.search.path.front();
   all.file_m = residual_of_file_m(problem, greybox::kObserver_per_s);
   all.before = greybox::with_values(problem.model, before.fitted);
   all.before_m = residual_of_m(problem, before.fitted, greybox::kObserver_per_s);
@@ -230,7 +230,7 @@ std::vector<Section> record_sections(const DiagnosisReport& outcome) {
                     .before = {},
                     .after = {},
                     .noise_floor_m = data.noise_floor_m,
-                    .improved = !outcome.diagnosis.missing.empty()};
+                    .improved = outcome.diagnosis.adds_to_file()};
     for (Eigen::Index k = 0; k < all.free_deviated_m.cols(); ++k) {
       page.free_deviated_m.push_back(counted_part(all.free_deviated_m.col(k), start, record));
     }

@@ -107,7 +107,9 @@ Plot over_motion(const std::vector<MotionVariable>& variables, const greybox::Da
 }  // namespace
 
 std::optional<present::Section> steps_section(const DiagnosisReport& outcome) {
-  if (outcome.diagnosis.missing.empty()) return std::nullopt;
+  // the better model has a change beside the effects, which the steps' models have not
+  const bool changes = outcome.diagnosis.verdict == selection::Verdict::changing;
+  if (outcome.diagnosis.missing.empty() || changes) return std::nullopt;
   const std::vector<Stage> stages = stages_of(outcome);
   if (stages.size() < 3) return std::nullopt;  // one step: the record's own section shows it
   const greybox::FitDataset& data = outcome.prepared->problem.data;

@@ -103,6 +103,10 @@ struct Diagnosis {
 
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
+  /// True where the better model is more than the file's with other values.
+  [[nodiscard]] bool adds_to_file() const {
+    return !missing.empty() || verdict == Verdict::changing;
+  }
   /// True where the answer rests on one of the names: verdicts missing and unexplained rest on what
   /// is established alone.
   [[nodiscard]] bool rests_on_one_of(const std::vector<std::string>& names) const;

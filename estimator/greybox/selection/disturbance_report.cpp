@@ -127,11 +127,15 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
 
 StructureSearch structure_search_of(const SearchContext& context, const ModelStage& first,
                                     const InnovationSearch& search) {
+  ModelStage final{search.final.model.added, simulated(context, search.final.model.fitted)};
   StructureSearch result;
-  result.path.push_back(first);
+  result.path.push_back(final.added.empty() ? final : first);
   for (const InnovationRound& round : search.rounds) {
     Round one;
-    one.before = {round.before.added, simulated(context, round.before.fitted)};
+    // the model as given is the one that the path begins with
+    one.before = round.before.added.empty()
+                     ? result.path.front()
+                     : ModelStage{round.before.added, simulated(context, round.before.fitted)};
     for (const InnovationCandidate& candidate : round.candidates) {
       if (!candidate.effect.empty())
         one.candidates.push_back(candidate_of(context, candidate, one.before));
@@ -140,7 +144,6 @@ StructureSearch structure_search_of(const SearchContext& context, const ModelSta
     if (grew && !round.before.added.empty()) result.path.push_back(one.before);
     result.rounds.push_back(std::move(one));
   }
-  ModelStage final{search.final.model.added, simulated(context, search.final.model.fitted)};
   // an effect that was taken and dropped again leaves no step
   std::erase_if(result.path, [&](const ModelStage& stage) {
     return !stage.added.empty() &&
@@ -149,11 +152,7 @@ StructureSearch structure_search_of(const SearchContext& context, const ModelSta
               return std::find(final.added.begin(), final.added.end(), effect) == final.added.end();
             }));
   });
-  if (!final.added.empty()) {
-    result.path.push_back(final);
-  } else {
-    result.path.back() = final;
-  }
+  if (!final.added.empty()) result.path.push_back(final);
   result.final = std::move(final);
   return result;
 }
