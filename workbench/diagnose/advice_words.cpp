@@ -65,7 +65,8 @@ constexpr std::array kRecord{
     Word{"gain", "record the supply pressure and the spool position"},
     Word{"force", "record the chamber pressures"},
     Word{"measurement", "record the position with a second sensor"},
-    Word{"lag", "record the spool position or the drive's own speed, which shows a lag ahead of it"},
+    Word{"lag",
+         "record the spool position or the drive's own speed, which shows a lag ahead of it"},
 };
 
 constexpr std::array kDrift{
