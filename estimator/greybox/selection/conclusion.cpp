@@ -317,6 +317,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
     }
   } else {
     take_parameters(innovations.final, result);
+    keep_file_where_better(search, result);
   }
   for (const InnovationRivals& rivals :
        find_rivals(search, innovations, effects_with_rivals(innovations, result))) {

@@ -74,14 +74,18 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   }
   drop_idle_refinements(result.final);
   result.better = with_values(context.problem.model, result.final);
-  // the best so far may be that of a fit which had only begun
-  if (context.cancelled() && stage.fitted.validation_rms_m > result.search.nominal_rms_m) {
-    result.better = context.problem.model;
-  }
+  keep_file_where_better(context, result);
   const Eigen::VectorXd& weights = context.problem.data.final_weights();
   const double observer_per_s = with_observer ? kObserver_per_s : 0.0;
   report_parameters(context, std_errors(context.problem.data, weights, result.final), weights,
                     observer_per_s, result);
+}
+
+void keep_file_where_better(const SearchContext& context, Diagnosis& result) {
+  if (!context.cancelled()) return;
+  if (simulated(context, result.final).validation_rms_m > result.search.nominal_rms_m) {
+    result.better = context.problem.model;
+  }
 }
 
 void take_parameters(const InnovationStage& stage, Diagnosis& result) {

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "estimator/greybox/dataset_simulation.h"
+#include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Held-out error of a model as it is.
+double held_out_m(const plant_sim::ModelFile& model, const FitDataset& data) {
+  DatasetSimulation run(model, data, {});
+  Eigen::MatrixXd residual_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residual_m);
+  return rms(residual_m.col(0), data.validation_mask);
+}
+
+/// A servo on the wrong side of its dead band, whose sensor hums: simulations and innovations.
+SearchContext disturbed_servo() {
+  return diagnose_test::servo_context(
+      {.rate_mps = diagnose_test::with_offset_and_band(0.02, 0.05),
+       .reading_m = [](double y_m, double t_s) { return y_m + 30e-6 * std::sin(107.0 * t_s); }});
+}
+
+TEST(InterruptedDiagnosis, WritesNoModelThatIsWorseThanItsFile) {
+  const SearchContext servo = disturbed_servo();
+  const double file_m = held_out_m(servo.problem.model, servo.problem.data);
+  std::atomic<long> asked = 0;
+  DiagnosisOptions options;
+  options.threads = 1;
+  options.cancel = [&] {
+    ++asked;
+    return false;
+  };
+  (void)diagnose(servo.problem, options);
+  const long all = asked;
+  for (double share = 1.0; share * static_cast<double>(all) >= 0.5; share *= 0.6) {
+    const long last = std::lround(share * static_cast<double>(all)) - 1;
+    asked = 0;
+    options.cancel = [&] { return asked++ >= last; };
+    const Diagnosis cut = diagnose(servo.problem, options);
+    EXPECT_LE(held_out_m(cut.better, servo.problem.data), (1.0 + 1e-9) * file_m)
+        << last << " of " << all;
+  }
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
