@@ -111,6 +111,40 @@ TEST(ReadingFaults, ANullThatTheLoopHoldsIsNoMotion) {
   EXPECT_TRUE(reading_faults(held).stuck.empty());
 }
 
+TEST(ReadingFaults, AReadingThatStaysAwayForThreeSamplesIsNoLeap) {
+  Dataset away = record();
+  for (const std::size_t k : {1500U, 1501U, 1502U}) away.y_m[k] = 9.99;
+  EXPECT_TRUE(reading_faults(away).leaps.empty());
+}
+
+TEST(ReadingFaults, ALeapIsFoundUpToTheThirdSampleOfASegment) {
+  Dataset segments = record();
+  segments.starts = {0, 2000};
+  for (const std::size_t leap : {1996U, 1997U, 2002U, 2003U}) {
+    Dataset leaping = segments;
+    leaping.y_m[leap] = 9.99;
+    const ReadingFaults faults = reading_faults(leaping);
+    ASSERT_EQ(faults.leaps.size(), 1U) << leap;
+    EXPECT_EQ(faults.leaps[0].begin, leap);
+    EXPECT_EQ(faults.leaps[0].end, leap + 1);
+  }
+  for (const std::size_t edge : {1998U, 1999U, 2000U, 2001U}) {
+    Dataset leaping = segments;
+    leaping.y_m[edge] = 9.99;
+    EXPECT_TRUE(reading_faults(leaping).leaps.empty()) << edge;
+  }
+}
+
+TEST(ReadingFaults, TwoSamplesThatLeapAreOneLeap) {
+  Dataset leaping = record();
+  leaping.y_m[1500] = 9.99;
+  leaping.y_m[1501] = -9.99;
+  const ReadingFaults faults = reading_faults(leaping);
+  ASSERT_EQ(faults.leaps.size(), 1U);
+  EXPECT_EQ(faults.leaps[0].begin, 1500U);
+  EXPECT_EQ(faults.leaps[0].end, 1502U);
+}
+
 TEST(ReadingFaults, ASampleThatLeapsIsFoundWhereItIs) {
   Dataset leaping = record();
   leaping.y_m[1500] = 9.99;
