@@ -11,7 +11,7 @@ constexpr double kTs = 0.005;
 constexpr double kObserver = 2.0;
 
 /// A record of `factor` times the model's motion, and some `other` motion.
-MotionRatio ratio(double factor, double other) {
+MotionRatio ratio(double factor, double other, PlantStart start = PlantStart::held_by_oil) {
   std::vector<double> u;
   std::vector<double> y;
   std::vector<double> modelled;
@@ -25,10 +25,10 @@ MotionRatio ratio(double factor, double other) {
   // The observer pulls the model's position to the measured one.
   std::vector<double> error_m{0.0};
   for (std::size_t k = 0; k + 1 < y.size(); ++k) {
-    const double kept = 1.0 - record.observer_gain(k, kObserver);
+    const double kept = 1.0 - record.observer_gain(k, kObserver, start).position;
     error_m.push_back(kept * error_m[k] + y[k + 1] - y[k] - modelled[k + 1] + modelled[k]);
   }
-  return motion_ratio(record, error_m, kObserver, PlantStart::held_by_oil);
+  return motion_ratio(record, error_m, kObserver, start);
 }
 
 TEST(MotionScale, IsTheFactorBetweenTheMotions) {
@@ -37,6 +37,12 @@ TEST(MotionScale, IsTheFactorBetweenTheMotions) {
     EXPECT_NEAR(found.ratio, factor, 1e-6 * std::abs(factor));
     EXPECT_NEAR(found.explained, 1.0, 1e-9);
   }
+}
+
+TEST(MotionScale, IsTheFactorForAnAxisThatFindsItsSpeedToo) {
+  const MotionRatio found = ratio(1.3, 0.0, PlantStart::any_speed);
+  EXPECT_NEAR(found.ratio, 1.3, 1e-6);
+  EXPECT_NEAR(found.explained, 1.0, 1e-9);
 }
 
 TEST(MotionScale, NamesAFactorOfAThousandAlone) {

@@ -110,7 +110,9 @@ TEST(Localise, NamesPositionAndMeasurementOnAnAxisWhoseSegmentsBeginInMotion) {
   ASSERT_FALSE(where.empty());
   EXPECT_EQ(where[0].site, "measurement");
   EXPECT_EQ(where[0].variable, "y");
-  EXPECT_GT(where[0].explained_ratio, 0.9);
+  // the straight pieces leave 6 % of the dent; with the weak observer alone in every segment's
+  // first half second, 9 % would be left
+  EXPECT_GT(where[0].explained_ratio, 0.925);
   EXPECT_THAT(where[0].or_sites, IsEmpty());
 }
 
