@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "estimator/greybox/selection/innovation_search.h"
 
@@ -84,9 +85,10 @@ void set_throughout(ChangeScore& score, const Dataset& record) {
   score.duration_s = record.t_s.back() - record.t_s.front();
 }
 
-/// Drifts of what a constant disturbance looks like, over the whole record, within it, or towards
-/// an end value: the innovations forget them as well.
-void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
+}  // namespace
+
+std::vector<ChangeScore> drifts_of(const InnovationStage& stage) {
+  std::vector<ChangeScore> scores;
   const Dataset& record = stage.context.problem.data.records.front();
   for (const char* effect : {"null_bias", "load_force"}) {
     ChangeScore score = score_of_effect(stage, effect);
@@ -102,7 +104,10 @@ void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) 
     score.duration_s = kDriftSettles * length_s;
     scores.push_back(score);
   }
+  return scores;
 }
+
+namespace {
 
 /// A load or an offset that sets in: the innovations forget them at once, so that no score shows
 /// them.
@@ -194,7 +199,7 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
 std::vector<ChangeScore> change_candidates(const InnovationStage& stage) {
   std::vector<ChangeScore> scores = finalists(stage);
   add_jumps(stage, scores);
-  add_drifts(stage, scores);
+  for (ChangeScore& drift : drifts_of(stage)) scores.push_back(std::move(drift));
   // a record has one change of a parameter
   std::erase_if(scores, [&](const ChangeScore& score) {
     const auto& known = stage.context.problem.model.changes;

@@ -21,6 +21,10 @@ struct ChangeProposal {
 [[nodiscard]] ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage,
                                       const ChangeScore& score);
 
+/// Drifts of what a constant disturbance looks like, over the whole record, within it, or towards
+/// an end value: the innovations forget them.
+[[nodiscard]] std::vector<ChangeScore> drifts_of(const InnovationStage& stage);
+
 /// Changes worth a fit: the best by their scores, and those that the innovations forget at once, a
 /// load that sets in and drifts of load and null.
 [[nodiscard]] std::vector<ChangeScore> change_candidates(const InnovationStage& stage);

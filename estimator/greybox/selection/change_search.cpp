@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/selection/change_fits.h"
 #include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/change_rivals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
-#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -19,10 +19,6 @@ constexpr double kMotionExplains = 2.0;
 /// A change counts together with its effect from this share of the effect's gain on: a curve has a
 /// constant of its own.
 constexpr double kChangeOfEffect = 0.05;
-/// Range and step, in samples, in which the time of a change is looked for about its fit.
-constexpr double kScanned_s = 1.0;
-constexpr double kScanStep = 4.0;
-constexpr int kScans = 3;
 /// Share of the record at its ends in which a step is none.
 constexpr double kEnds = 0.01;
 /// Samples about a change within which a load that sets in is the change's: a model that brings the
@@ -33,54 +29,6 @@ constexpr double kStandardErrors = 2.0;
 constexpr double kNoRamp_nats = 20.0 * kEvidence_nats;
 /// Time constants after which an exponential has settled.
 constexpr double kSettledAfter = 3.0;
-
-/// Sets the time of a change to the likeliest within kScanned_s, the other parameters held: the
-/// likelihood has a minimum about every pause of the motion. False where it is that already.
-bool scan_time(const SearchContext& context, const std::string& name, FitSummary& fitted) {
-  const auto at = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
-                               [&](const FreeParameter& p) { return p.name == name; });
-  if (at == fitted.parameters.end()) return false;
-  const auto row = static_cast<Eigen::Index>(at - fitted.parameters.begin());
-  const double step = kScanStep * context.problem.data.sample_time_s / at->unit;
-  constexpr int kLanes = static_cast<int>(ObserverSimulation::kLanes);
-  const auto half = std::max(kLanes, static_cast<int>(kScanned_s / at->unit / step));
-  DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
-  double least = rms(fitted.residual_m, context.problem.data.training_mask);
-  double best = fitted.theta[row];
-  Eigen::MatrixXd residuals_m;
-  for (int from = -half; from <= half && !context.cancelled(); from += kLanes) {
-    Eigen::MatrixXd points = fitted.theta.replicate(1, kLanes);
-    for (int i = 0; i < kLanes; ++i) {
-      points(row, i) =
-          std::clamp(points(row, i) + step * std::min(from + i, half), at->lower, at->upper);
-    }
-    run.residuals(points, residuals_m);
-    for (int i = 0; i < kLanes; ++i) {
-      const double now = rms(residuals_m.col(i), context.problem.data.training_mask);
-      if (now >= least) continue;
-      least = now;
-      best = points(row, i);
-    }
-  }
-  const bool moved = best != fitted.theta[row];
-  fitted.theta[row] = best;
-  return moved;
-}
-
-/// A proposal fitted with the stage's gains, then with a noise model of its own.
-InnovationStage fitted(const ChangeProposal& proposal, const InnovationStage& stage,
-                       SimulationWidth width) {
-  SearchContext with_gains = stage.context;
-  with_gains.problem.model = proposal.context.problem.model;
-  ModelStage start = proposal.start;
-  start.fitted = fit_innovations(with_gains, {start.fitted.parameters, start.fitted.theta}, width,
-                                 InnovationFit::trial);
-  if (scan_time(with_gains, name_of(proposal.score) + ".at_s", start.fitted)) {
-    start.fitted = fit_innovations(with_gains, {start.fitted.parameters, start.fitted.theta}, width,
-                                   InnovationFit::trial);
-  }
-  return settled(proposal.context, std::move(start), stage.noise, 1, width);
-}
 
 /// The likeliest; the plant's own parameter where an absent effect's is hardly likelier: they are
 /// one where the equations are.
@@ -94,23 +42,6 @@ std::size_t best_of(const std::vector<ChangeProposal>& proposals,
     if (cost(i) < cost(best)) best = i;
   }
   return best;
-}
-
-/// The stage settled with a change, its time scanned: with a noise model of its own the likelihood
-/// shows it more clearly.
-InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,
-                         SimulationWidth width) {
-  InnovationStage stage = settled(taken.context, found.model, found.noise, kMostTurns, width);
-  if (!(stage.minus_two_log < found.minus_two_log)) stage = found;
-  for (int turn = 0; turn < kScans; ++turn) {
-    ModelStage moved = stage.model;
-    if (!scan_time(stage.context, name_of(taken.score) + ".at_s", moved.fitted)) break;
-    InnovationStage other =
-        settled(taken.context, std::move(moved), stage.noise, kMostTurns, width);
-    if (!(other.minus_two_log < stage.minus_two_log)) break;
-    stage = std::move(other);
-  }
-  return stage;
 }
 
 /// Takes a fitted proposal into the stage.
@@ -157,16 +88,16 @@ bool ends_beyond(const Dataset& record, const ChangeProposal& change,
 }
 
 /// Adds the likeliest change; false when none gains enough.
-bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch& search,
+bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& starts,
+                InnovationStage& stage, ChangeSearch& search,
                 std::vector<ChangeScore>& scores_taken) {
   const Dataset& record = plain.problem.data.records.front();
   std::vector<ChangeProposal> proposals;
+  if (search.changes.empty()) proposals = starts;
   for (const ChangeScore& score : change_candidates(stage)) {
     proposals.push_back(proposal(search.context, stage, score));
   }
-  std::vector<InnovationStage> stages(proposals.size());
-  in_parallel(proposals.size(), plain.options.threads,
-              [&](std::size_t i) { stages[i] = fitted(proposals[i], stage, SimulationWidth{}); });
+  std::vector<InnovationStage> stages = fit_all(proposals, stage, plain.options.threads);
   if (stages.empty() || plain.cancelled()) return false;
   const auto also = [&](const ChangeScore& score) {
     proposals.push_back(proposal(search.context, stage, score));
@@ -288,7 +219,8 @@ bool is_complete(const ChangeSearch& search) {
 
 /// The changes found from a stage on. A second one has to be worth it beside the lines that the
 /// first one leaves.
-FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
+FoundChanges changes_from(ChangeSearch search, const std::vector<ChangeProposal>& starts,
+                          InnovationStage stage) {
   const SearchContext plain = search.context;
   const ChangeSearch begun = search;
   const InnovationStage first = stage;
@@ -296,7 +228,7 @@ FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
   std::optional<ChangeSearch> best;
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && !(best && is_complete(*best)) &&
-         add_change(plain, stage, search, taken)) {
+         add_change(plain, starts, stage, search, taken)) {
     ChangeSearch found = concluded(search, stage, taken);
     const auto cost = [](const ChangeSearch& one) { return penalised(one.innovations.final); };
     const double enough_nats = kEvidence_nats + found.innovations.inexact_nats;
@@ -323,6 +255,13 @@ FoundChanges changes_from(ChangeSearch search, InnovationStage stage) {
   return result;
 }
 
+/// Gain of the changes when they were taken, before lines were seen beside them.
+double gained_nats(const ChangeSearch& search) {
+  double sum_nats = 0.0;
+  for (const auto& [name, gain_nats] : search.innovations.gains_nats) sum_nats += gain_nats;
+  return sum_nats;
+}
+
 }  // namespace
 
 bool motion_explains_more(const InnovationStage& stage) {
@@ -338,20 +277,23 @@ bool motion_explains_more(const InnovationStage& stage) {
 }
 
 FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
-                            ChangesSought sought) {
+                            ChangesSought sought, const std::vector<ChangeProposal>& starts) {
   if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
   ChangeSearch search{context, {}, {}};
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
-  if (motion_explains_more(stage) != (sought == ChangesSought::after_laws)) return {};
+  if (starts.empty() && motion_explains_more(stage) != (sought == ChangesSought::after_laws))
+    return {};
   search.innovations.before = stage;
-  FoundChanges found = changes_from(search, stage);
+  FoundChanges found = changes_from(search, starts, stage);
   if (found.explaining) return found;
   // a drift passes for a slow line, so that changes are sought without lines first; a strong line
   // hides a change, so that they are sought again behind lines
   add_lines(context, search.innovations, stage);
   if (stage.noise.lines.empty()) return found;
-  FoundChanges behind_lines = changes_from(std::move(search), std::move(stage));
+  const double by_lines_nats = 0.5 * (penalised(search.innovations.before) - penalised(stage));
+  if (found.likeliest && by_lines_nats < gained_nats(*found.likeliest)) return found;
+  FoundChanges behind_lines = changes_from(std::move(search), starts, std::move(stage));
   return behind_lines.likeliest ? behind_lines : found;
 }
 

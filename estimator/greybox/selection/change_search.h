@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/parameter_change.h"
 
@@ -28,9 +29,10 @@ struct FoundChanges {
   std::optional<ChangeSearch> likeliest;   ///< the likeliest alone, whatever it leaves
 };
 
-/// Empty where changes are sought at the other time. `base`: a fitted model, with effects or
-/// without.
+/// Empty where changes are sought at the other time, unless some are known: `starts`, fitted by
+/// simulations. `base`: a fitted model, with effects or without.
 [[nodiscard]] FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
-                                          ChangesSought sought = ChangesSought::before_laws);
+                                          ChangesSought sought = ChangesSought::before_laws,
+                                          const std::vector<ChangeProposal>& starts = {});
 
 }  // namespace estimator::greybox::selection

@@ -6,6 +6,7 @@
 
 #include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/drift_starts.h"
 #include "estimator/greybox/selection/effects_beside_change.h"
 
 namespace estimator::greybox::selection {
@@ -82,6 +83,18 @@ bool date_changes(const SearchContext& context, const ModelStage& first,
   if (!beside) return false;
   FoundChanges changes = search_changes(context, *beside, sought);
   return changes.explaining && take_changes(first, *changes.explaining, result, result);
+}
+
+bool date_drifts(const SearchContext& context, const ModelStage& first, double most_m,
+                 Diagnosis& result) {
+  const std::vector<ChangeProposal> drifts = drift_starts(context, first, most_m);
+  if (drifts.empty() || context.cancelled()) return false;
+  FoundChanges changes = search_changes(context, first, ChangesSought::before_laws, drifts);
+  if (!changes.explaining) return false;
+  Diagnosis without = begun(result);
+  without.search = result.search;
+  conclude(context, context, without);
+  return take_changes(first, *changes.explaining, without, result);
 }
 
 }  // namespace estimator::greybox::selection

@@ -12,4 +12,9 @@ namespace estimator::greybox::selection {
                                 const ModelStage& likeliest, Diagnosis& result,
                                 ChangesSought sought = ChangesSought::before_laws);
 
+/// The same for a drift that simulations alone find, before effects are sought in its place, beside
+/// the model as given, `result.search`. False where the best leaves `most_m` or more, held out.
+[[nodiscard]] bool date_drifts(const SearchContext& context, const ModelStage& first, double most_m,
+                               Diagnosis& result);
+
 }  // namespace estimator::greybox::selection

@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
+#include "estimator/greybox/selection/file_values.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/record_differences.h"
@@ -30,6 +31,9 @@ constexpr double kClearlyWorse = 0.25;
 constexpr double kSlowDisturbance = 0.6;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
+
+/// Share of the error from which on another beginning of the search leaves far less.
+constexpr double kFarLess = 0.5;
 
 /// Effects beside which much physics is missing, from which on laws are tried in their place.
 constexpr std::size_t kBeforeLaws = 2;
@@ -177,6 +181,35 @@ SearchStart begin_search(const SearchContext& context) {
   return start;
 }
 
+/// Searches again with wider ranges where the file's values strain and that leaves far less, or
+/// noise; true where the problem has changed.
+bool widen_file_values(const SearchContext& search, SearchStart& start, DiagnosisProblem& problem) {
+  DiagnosisProblem widened = problem;
+  if (search.cancelled() || is_explained(search, start.branch.stage) ||
+      !widen_strained(start.first, widened)) {
+    return false;
+  }
+  const SearchContext wider = for_search({widened, search.options});
+  SearchStart other = begin_search(wider);
+  const ModelStage& stage = other.branch.stage;
+  if (!is_explained(wider, stage) &&
+      !(stage.fitted.validation_rms_m < kFarLess * start.branch.stage.fitted.validation_rms_m)) {
+    return false;
+  }
+  start = std::move(other);
+  problem = std::move(widened);
+  return true;
+}
+
+/// Dates a drift that leaves far less than the effects found so far, and far from the noise.
+bool find_drift(const SearchContext& search, const SearchStart& start, Diagnosis& result) {
+  const double left_m = start.branch.stage.fitted.validation_rms_m;
+  if (search.problem.effects_only || !(left_m > kFarFromFloor * search.problem.data.noise_floor_m))
+    return false;
+  result.search = abandon_search(search, start);
+  return date_drifts(search, start.first, kFarLess * left_m, result);
+}
+
 /// True where the disturbance is so slow that it may be a drift of the rig.
 bool drifts(const Diagnosis& result, const FitDataset& data) {
   return result.disturbance && result.disturbance->corner_Hz > 0.0 &&
@@ -279,6 +312,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       result.command_lead_samples = lead.samples;
     }
   }
+  if (widen_file_values(search, start, context.problem)) search = for_search(context);
   const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
@@ -294,7 +328,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   } else if (leaves_noise(search, start.branch.stage)) {
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
-  } else {
+  } else if (!find_drift(search, start, result)) {
     weigh_innovations(context, search, std::move(start), result, likeliest);
   }
   if (!wrong_record && !problem.effects_only) look_beyond_effects(search, first, likeliest, result);

@@ -35,8 +35,10 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
                                                      const InnovationStage& without,
                                                      TrialMemo& memo);
 
-/// The effect and those of its exchanges that explain the record about as well.
+/// The effect and those of its exchanges that explain the record about as well, where the search
+/// may owe `inexact_nats` to models that are not exact.
 [[nodiscard]] InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,
-                                            const std::vector<InnovationStage>& exchanges);
+                                            const std::vector<InnovationStage>& exchanges,
+                                            double inexact_nats);
 
 }  // namespace estimator::greybox::selection

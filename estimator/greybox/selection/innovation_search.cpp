@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/schema/joined.h"
+#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/rig_scale.h"
@@ -53,6 +54,25 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   stage = std::move(other);
 }
 
+/// Nats that the lines of a search have gained, each when it was taken.
+double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
+  double sum_nats = 0.0;
+  for (const InnovationRound& round : rounds) {
+    if (!round.taken || !round.candidates.front().effect.empty()) continue;
+    sum_nats += round.candidates.front().gain_nats + round.candidates.front().penalty_nats;
+  }
+  return sum_nats;
+}
+
+/// Gains that the stage may owe to inexact models of what the search has explained.
+double inexact_nats(const SearchContext& context, const InnovationSearch& search,
+                    const InnovationStage& stage) {
+  const double all_nats = 0.5 * (search.before.minus_two_log - stage.minus_two_log);
+  const double lines_nats = gained_by_lines_nats(search.rounds);
+  return kInterpolated * context.problem.interpolated_nats +
+         kInexact * std::max(0.0, all_nats - lines_nats) + kInexactLines * lines_nats;
+}
+
 /// The final stage without effect `i`.
 InnovationStage stage_without(const SearchContext& context, const InnovationSearch& search,
                               const InnovationStage& final, std::size_t i) {
@@ -73,7 +93,8 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);
     std::vector<InnovationStage> others = exchanges(context, stage, added[i], without, search.memo);
-    search.rivals[added[i]] = rivals_among(stage, added[i], others);
+    search.rivals[added[i]] =
+        rivals_among(stage, added[i], others, inexact_nats(context, search, stage));
     std::erase_if(others, [](const auto& other) { return !effect_out_of_range(other).empty(); });
     const auto best =
         std::min_element(others.begin(), others.end(),
@@ -116,25 +137,6 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
       settled(context, stage.model, stage.noise, kMostTurns, wide(context.options.threads));
   if (polished.minus_two_log < stage.minus_two_log) stage = std::move(polished);
   return true;
-}
-
-/// Nats that the lines of a search have gained, each when it was taken.
-double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
-  double sum_nats = 0.0;
-  for (const InnovationRound& round : rounds) {
-    if (!round.taken || !round.candidates.front().effect.empty()) continue;
-    sum_nats += round.candidates.front().gain_nats + round.candidates.front().penalty_nats;
-  }
-  return sum_nats;
-}
-
-/// Gains that the stage may owe to inexact models of what the search has explained.
-double inexact_nats(const SearchContext& context, const InnovationSearch& search,
-                    const InnovationStage& stage) {
-  const double all_nats = 0.5 * (search.before.minus_two_log - stage.minus_two_log);
-  const double lines_nats = gained_by_lines_nats(search.rounds);
-  return kInterpolated * context.problem.interpolated_nats +
-         kInexact * std::max(0.0, all_nats - lines_nats) + kInexactLines * lines_nats;
 }
 
 void note_gains(InnovationSearch& search, const InnovationStage& final) {
@@ -262,7 +264,8 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& context,
     InnovationRivals group =
         known != search.rivals.end()
             ? known->second
-            : rivals_among(search.final, added[i], exchanges_of(context, search, i, memo));
+            : rivals_among(search.final, added[i], exchanges_of(context, search, i, memo),
+                           search.inexact_nats);
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

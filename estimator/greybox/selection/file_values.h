@@ -1,0 +1,17 @@
+// File values that the record strains: plant parameters that a search leaves at the end of the
+// range that their priors allow.
+//
+// Such a parameter cannot tell by how much the file is wrong, and an effect that acts as it does
+// stands in for the rest. Wider ranges leave that to the prior's own weight.
+#pragma once
+
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+/// Gives the plant parameters at which `stage` ends its range twice the range, the prior unchanged;
+/// false where there are none.
+bool widen_strained(const ModelStage& stage, DiagnosisProblem& problem);
+
+}  // namespace estimator::greybox::selection
