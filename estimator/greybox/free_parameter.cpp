@@ -8,8 +8,6 @@ namespace estimator::greybox {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// Range of a plant parameter, in standard deviations of its prior.
-constexpr double kWidest = 3.0;
 /// Range of an effect's parameter, in typical sizes.
 constexpr double kLargest = 200.0;
 
@@ -60,8 +58,9 @@ std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model) {
     const double sd = model.uncertainty_ratio(i);
     if (sd <= 0.0 || value <= 0.0) continue;
     const double least = info.min > 0.0 ? std::log(info.min / value) : -kInfinite;
-    found.push_back({info.name, ParameterScale::logarithmic, value, std::max(least, -kWidest * sd),
-                     std::min(std::log(info.max / value), kWidest * sd), 0.0, sd});
+    found.push_back({info.name, ParameterScale::logarithmic, value,
+                     std::max(least, -kPriorRange_sds * sd),
+                     std::min(std::log(info.max / value), kPriorRange_sds * sd), 0.0, sd});
   }
   return found;
 }

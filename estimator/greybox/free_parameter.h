@@ -19,6 +19,8 @@ enum class ParameterScale { linear, logarithmic, reciprocal };
 
 inline constexpr int kEveryRefinement = 1000;
 inline constexpr char kInRecord = '@';
+/// Range of a plant parameter about the file's value, in standard deviations of its prior.
+inline constexpr double kPriorRange_sds = 3.0;
 
 struct FreeParameter {
   /// "damping_N_s_per_m", "friction.coulomb_N"; with "@NAME" behind it in the record of that name

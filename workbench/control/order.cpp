@@ -33,7 +33,9 @@ class DaemonConnection {
     if (connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       const int error = errno;
       close(file_);
-      fail(error == ENOENT || error == ECONNREFUSED ? "no daemon is there" : std::strerror(error));
+      fail(error == ENOENT || error == ECONNREFUSED ? "no daemon is there"
+           : error == EAGAIN                        ? "the daemon does not answer"
+                                                    : std::strerror(error));
     }
   }
   ~DaemonConnection() { close(file_); }

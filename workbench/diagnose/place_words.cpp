@@ -67,7 +67,7 @@ std::string place_words(const selection::Diagnosis& d) {
   const std::string& plant = d.better.plant;
   std::string text = error_words(d) + " enters " + where_words(d.where[0], plant) + " (" +
                      percent(d.where[0]) + " of its square)";
-  if (d.where.size() > 1) {
+  if (d.where.size() > 1 && d.where[1].or_sites.empty()) {
     text += ", or " + where_words(d.where[1], plant) + " (" + percent(d.where[1]) + ")";
   }
   return text + ".";

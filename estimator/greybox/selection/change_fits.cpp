@@ -97,6 +97,11 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
     stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise, 1,
                         SimulationWidth{});
   });
+  // none of those that could be chosen: the others have no noise model
+  if (std::none_of(near.begin(), near.end(),
+                   [&](std::size_t i) { return std::isfinite(stages[i].minus_two_log); })) {
+    return {};
+  }
   return stages;
 }
 

@@ -147,6 +147,7 @@ Diagnosis begun(const Diagnosis& result) {
   begun.noise_floor_m = result.noise_floor_m;
   begun.floor_assumed = result.floor_assumed;
   begun.excitation = result.excitation;
+  begun.searched_s = result.searched_s;
   begun.command_lead_samples = result.command_lead_samples;
   begun.checks = result.checks;
   begun.search.nominal_rms_m = result.search.nominal_rms_m;
@@ -222,7 +223,10 @@ ParameterChange load_step(const InnovationSearch& innovations) {
 void locate_load(const InnovationSearch& innovations, std::vector<Localisation>& where) {
   std::erase_if(where, [](const Localisation& one) { return one.variable != "time"; });
   const std::string site = innovations.final.linear.front().force ? "force" : "flow";
-  for (Localisation& one : where) one.site = site;
+  for (Localisation& one : where) {
+    one.site = site;
+    one.or_sites.clear();
+  }
 }
 
 /// True for an effect of size zero that has no refinement to act by.
@@ -290,14 +294,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       innovations.physics_missing() ||
       (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
                                                   result.disturbance, result.rms_after_m));
-  // stated is no more than there is: friction and play let less through than their linearised
-  // models do
-  if (result.disturbance) {
-    result.disturbance->rms_m = std::min(result.disturbance->rms_m, result.rms_after_m);
-    for (DisturbanceLine& line : result.disturbance->lines) {
-      line.rms_m = std::min(line.rms_m, result.disturbance->rms_m);
-    }
-  }
+  if (result.disturbance) limit(*result.disturbance, result.rms_after_m);
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
@@ -64,6 +66,16 @@ void prefer_effects(const SearchContext& context, const ModelStage& first, Chang
   changes.explaining = others.explaining;
 }
 
+/// True where a change is that of a parameter among the drifts'.
+bool has_one_of(const std::vector<ChangeProposal>& drifts,
+                const std::vector<ParameterChange>& changes) {
+  return std::any_of(changes.begin(), changes.end(), [&](const ParameterChange& change) {
+    return std::any_of(drifts.begin(), drifts.end(), [&](const ChangeProposal& drift) {
+      return drift.score.parameter.name == change.parameter;
+    });
+  });
+}
+
 }  // namespace
 
 bool date_changes(const SearchContext& context, const ModelStage& first,
@@ -90,11 +102,16 @@ bool date_drifts(const SearchContext& context, const ModelStage& first, double m
   const std::vector<ChangeProposal> drifts = drift_starts(context, first, most_m);
   if (drifts.empty() || context.cancelled()) return false;
   FoundChanges changes = search_changes(context, first, ChangesSought::before_laws, drifts);
-  if (!changes.explaining) return false;
+  prefer_effects(context, first, ChangesSought::before_laws, changes);
+  if (!changes.explaining || !has_one_of(drifts, changes.explaining->changes)) return false;
   Diagnosis without = begun(result);
   without.search = result.search;
   conclude(context, context, without);
-  return take_changes(first, *changes.explaining, without, result);
+  Diagnosis dated = result;
+  if (!take_changes(first, *changes.explaining, without, dated) || !(dated.rms_after_m < most_m))
+    return false;
+  result = std::move(dated);
+  return true;
 }
 
 }  // namespace estimator::greybox::selection

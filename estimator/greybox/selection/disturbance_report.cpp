@@ -125,6 +125,11 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
   return result;
 }
 
+void limit(Disturbance& disturbance, double rms_m) {
+  disturbance.rms_m = std::min(disturbance.rms_m, rms_m);
+  for (DisturbanceLine& line : disturbance.lines) line.rms_m = std::min(line.rms_m, rms_m);
+}
+
 StructureSearch structure_search_of(const SearchContext& context, const ModelStage& first,
                                     const InnovationSearch& search) {
   ModelStage final{search.final.model.added, simulated(context, search.final.model.fitted)};

@@ -32,6 +32,10 @@ struct Disturbance {
 [[nodiscard]] std::optional<Disturbance> disturbance_of(const SearchContext& context,
                                                         const InnovationSearch& search);
 
+/// Limits the disturbance and its lines to `rms_m`, the error that there is: friction and play let
+/// less through than their linearised models do.
+void limit(Disturbance& disturbance, double rms_m);
+
 /// The search in the form of the other one, with held-out errors of simulations: a round for each
 /// candidate taken, `p_value` of the likelihood ratio.
 [[nodiscard]] StructureSearch structure_search_of(const SearchContext& context,

@@ -15,13 +15,28 @@ constexpr double kGuess = 0.5;
 /// Distance from the end of the range, in standard deviations of the prior.
 constexpr double kAtEnd = 0.01;
 
-/// Widens a logarithmic range as far as the plant's own limits of the parameter allow.
-void widen(const plant_sim::PlantInfo& plant, FreeParameter& p) {
-  for (const plant_sim::ParameterInfo& info : plant.parameters) {
-    if (info.name != p.name) continue;
-    p.upper = std::min(kWider * p.upper, p.to_theta(info.max));
-    p.lower = info.min > 0.0 ? std::max(kWider * p.lower, p.to_theta(info.min)) : kWider * p.lower;
+/// Ends of a logarithmic range that are the prior's own: those that a user or the plant has set
+/// stay.
+bool of_prior(double end, double prior_sd) {
+  return std::abs(std::abs(end) - kPriorRange_sds * prior_sd) < 1e-9;
+}
+
+/// Widens the range at the end that theta has reached, as far as the plant's own limits allow.
+bool widen(const plant_sim::PlantInfo& plant, double theta, FreeParameter& p) {
+  const auto info = std::find_if(plant.parameters.begin(), plant.parameters.end(),
+                                 [&](const auto& one) { return one.name == p.name; });
+  if (info == plant.parameters.end()) return false;
+  const double margin = kAtEnd * p.prior_sd;
+  if (theta >= p.upper - margin && of_prior(p.upper, p.prior_sd)) {
+    p.upper = std::min(kWider * p.upper, p.to_theta(info->max));
+    return true;
   }
+  if (theta <= p.lower + margin && of_prior(p.lower, p.prior_sd)) {
+    p.lower =
+        info->min > 0.0 ? std::max(kWider * p.lower, p.to_theta(info->min)) : kWider * p.lower;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -33,11 +48,7 @@ bool widen_strained(const ModelStage& stage, DiagnosisProblem& problem) {
     if (!(p.prior_sd > 0.0 && p.prior_sd <= kGuess)) continue;
     for (std::size_t i = 0; i < stage.fitted.parameters.size(); ++i) {
       if (stage.fitted.parameters[i].name != p.name) continue;
-      const double theta = stage.fitted.theta[static_cast<Eigen::Index>(i)];
-      const double margin = kAtEnd * p.prior_sd;
-      if (theta > p.lower + margin && theta < p.upper - margin) continue;
-      widen(plant, p);
-      any = true;
+      if (widen(plant, stage.fitted.theta[static_cast<Eigen::Index>(i)], p)) any = true;
     }
   }
   return any;

@@ -10,8 +10,8 @@
 
 namespace estimator::greybox::selection {
 
-/// Gives the plant parameters at which `stage` ends its range twice the range, the prior unchanged;
-/// false where there are none.
+/// Doubles the range of plant parameters at the end that `stage` has reached, the prior unchanged;
+/// false where there are none. Ends that a user or the plant has set stay.
 bool widen_strained(const ModelStage& stage, DiagnosisProblem& problem);
 
 }  // namespace estimator::greybox::selection

@@ -50,7 +50,8 @@ TEST(ReproduceProgram, RefusesAFileInAFolderThatIsMissingBeforeItRuns) {
   const Outcome outcome = run_program("reproduce --json /nowhere/rows.json");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.output, "");
-  EXPECT_EQ(outcome.error, "spoolwatch: --json /nowhere/rows.json: the folder /nowhere does not exist\n");
+  EXPECT_EQ(outcome.error,
+            "spoolwatch: --json /nowhere/rows.json: the folder /nowhere does not exist\n");
 }
 
 TEST(ReproduceProgram, RefusesAnUnknownOption) {

@@ -46,6 +46,18 @@ TEST(FileValues, OnlyTheStrainedOneIsWidened) {
   EXPECT_EQ(parameter(problem, "supply_pressure_Pa").upper, others);
 }
 
+TEST(FileValues, AnEndThatTheUserSetStays) {
+  DiagnosisProblem problem = context_of("motion=multisine,length_s=2").problem;
+  FreeParameter& gain = parameter(problem, kGain);
+  const double lower = gain.lower;
+  gain.upper = 0.5 * gain.prior_sd;
+  EXPECT_FALSE(widen_strained(with_gain_off(problem, 0.5), problem));
+  EXPECT_EQ(gain.upper, 0.5 * gain.prior_sd);
+  EXPECT_TRUE(widen_strained(with_gain_off(problem, -3.0), problem));
+  EXPECT_EQ(gain.upper, 0.5 * gain.prior_sd);
+  EXPECT_NEAR(gain.lower, 2.0 * lower, 1e-12);
+}
+
 TEST(FileValues, AGainFarOffIsNoEffectBesideADeadBand) {
   constexpr double kDataSheet = 0.1;
   constexpr double kOff_sds = -4.0;
