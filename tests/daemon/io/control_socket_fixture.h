@@ -1,6 +1,7 @@
 // A control socket in a folder of its own, and clients of it.
 #pragma once
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -49,6 +50,17 @@ class ControlSocketTest : public testing::Test {
     ::close(file);
     errno = error;
     return -1;
+  }
+  /// The same while others fill the queue, which this thread alone empties.
+  [[nodiscard]] int connect_among_others(ControlSocket& socket) const {
+    constexpr int kTries = 1000;
+    int file = connect(SOCK_NONBLOCK);
+    for (int i = 0; i < kTries && file < 0 && errno == EAGAIN; ++i) {
+      socket.wait(1, never_[0]);
+      file = connect(SOCK_NONBLOCK);
+    }
+    if (file >= 0) ::fcntl(file, F_SETFL, 0);
+    return file;
   }
   static void say(int file, const std::string& text) {
     ASSERT_EQ(::send(file, text.data(), text.size(), MSG_NOSIGNAL),

@@ -131,10 +131,11 @@ TEST_F(ControlSocketRightsTest, ServesThoseWhoMayActFirstAndLookersAtARate) {
   int own = -1;
   while (passed_s() < 2.0) {
     if (own < 0) {
-      own = connect();
+      own = connect_among_others(socket);
       ASSERT_GE(own, 0);
       say(own, "{\"command\": \"status\"}\n");
-      const int stop = connect();
+      const int stop = connect_among_others(socket);
+      ASSERT_GE(stop, 0);
       say(stop, "{\"command\": \"stop\"}\n");
       // Both wait here when next() is asked.
       for (int i = 0; i < 200 && !socket.next(request,
