@@ -42,7 +42,10 @@ GrowingFile::~GrowingFile() {
 }
 
 bool GrowingFile::open_part() {
-  out_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  // the file in its place may be closed to others; a pipe of that name must not block
+  std::error_code unknown;
+  const mode_t mode = fs::exists(target_, unknown) ? 0600 : 0666;
+  out_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, mode);
   if (out_ < 0) fail(errno);
   if (flock(out_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     close(out_);
@@ -53,7 +56,7 @@ bool GrowingFile::open_part() {
   struct stat named {};
   const bool same = fstat(out_, &opened) == 0 && stat(part_.c_str(), &named) == 0 &&
                     opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
-  if (same && opened.st_size == 0) return true;
+  if (same && opened.st_size == 0 && S_ISREG(opened.st_mode)) return true;
   if (same) keep_earlier();
   close(out_);
   out_ = -1;

@@ -19,13 +19,13 @@ namespace config::record {
 /// Gives the owner and the permissions of the file `like`, as far as the file system allows.
 void keep_access(int file, const struct stat& like);
 
-/// Zero, or the error (errno).
+/// Writes all of a text; returns zero or the error (errno).
 [[nodiscard]] int write_error(int file, std::string_view text);
 
-/// Zero, or the error of a file system that can sync.
+/// Brings a file to the disk; returns zero or the error of a file system that can sync.
 [[nodiscard]] int sync_error(int file);
 
-/// Until the name of a renamed file in the folder is on the disk. Zero, or the error.
+/// Brings the names in a folder to the disk; returns zero or the error.
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder);
 
 }  // namespace config::record

@@ -68,7 +68,10 @@ void step(const RunningDaemon& daemon, const std::string& text) {
   }
   try {
     daemon.reload();
-  } catch (const Error&) {  // it still runs by the old rules: it took nothing
+  } catch (const Error& e) {
+    throw RunError("the daemon did not confirm it (" + std::string(why.what()) + "), " + files +
+                   " are back, and whether it runs by them is not known: " + e.what() +
+                   "; restart it or give `spoolwatch reload`");
   }
   throw RunError("the daemon did not take it, " + files + " are back: " + why.what());
 }

@@ -151,8 +151,7 @@ std::string dependence_words(const validation::Comparison& c, const DisturbanceC
   }
   if (c.whiteness_p < kSignificant && check.asked) {
     return "The residual is not white, and independent of the command, yet no disturbance of the "
-           "rig "
-           "accounts for it: `diagnose` seeks what does.";
+           "rig accounts for it: `diagnose` seeks what does.";
   }
   if (c.whiteness_p < kSignificant) {
     return "The residual is not white, yet independent of the command: look at what acts without "
@@ -162,18 +161,20 @@ std::string dependence_words(const validation::Comparison& c, const DisturbanceC
   return "The residual is white and independent of the command, as noise is.";
 }
 
-/// What is left is a disturbance's.
+/// Says which disturbance would leave as much; the command may still show in what is left.
 void add_disturbance(const validation::Comparison& c,
                      const estimator::greybox::selection::RemainingDisturbance& found, Words& w) {
   const std::string floor = units::length_words(found.floor_m);
-  w.judgement = Judgement::at_floor;
-  w.verdict = c.rms_m <= validation::kAtFloor * found.floor_m
-                  ? "At the floor that sensor and disturbance would set, " + floor +
-                        ": what is left follows neither command nor motion."
-                  : "Above the noise floor, yet what is left follows neither command nor motion: "
-                    "sensor and "
-                    "disturbance would leave " +
-                        floor + ".";
+  const bool at_floor = c.rms_m <= validation::kAtFloor * found.floor_m;
+  if (at_floor) w.judgement = Judgement::at_floor;
+  w.verdict = at_floor ? "At the floor that sensor and disturbance would set, " + floor + "."
+                       : "Above the noise floor, and above the " + floor +
+                             " that sensor and disturbance would leave.";
+  w.lines.push_back(
+      c.independence_p < kSignificant
+          ? "The residual goes with earlier commands: a controller that answers the disturbance "
+            "makes it do so, and so do parameters that are slightly off."
+          : "The residual follows neither command nor motion.");
   w.lines.push_back("A disturbance of the rig would explain it: " +
                     present::disturbance_words(found.disturbance) +
                     "; `diagnose` weighs it against the effects of the library.");

@@ -132,7 +132,7 @@ std::string formula_words(const selection::Localisation& where, const std::strin
          "\") and diagnose again";
 }
 
-/// What would tell the sites of a place apart, each measurement once.
+/// Measurements that would tell the sites of a place apart, each once.
 std::string words_to_locate(const selection::Localisation& where, bool axis) {
   std::vector<std::string> sites{where.site};
   sites.insert(sites.end(), where.or_sites.begin(), where.or_sites.end());

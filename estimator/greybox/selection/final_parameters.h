@@ -13,7 +13,7 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result);
 /// Takes the model that the innovations chose, as it is.
 void take_parameters(const InnovationStage& stage, Diagnosis& result);
 
-/// After an interruption, the model file as the better model where this leaves more on held-out
+/// Takes the model file as the better model of an interrupted search that leaves more on held-out
 /// data: the best so far may be that of a fit which had only begun.
 void keep_file_where_better(const SearchContext& context, Diagnosis& result);
 

@@ -23,9 +23,6 @@ constexpr double kWorthSettling_nats = 60.0;
 /// come back together with the noise model, turn by turn.
 constexpr double kWorthPolishing_nats = 30.0;
 constexpr double kWorthPolishing = 0.1;
-/// Share of what the search may owe to inexact models that may lie between rivals: these have the
-/// rest of the model in common.
-constexpr double kInexactRivals = 0.1;
 
 ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {
   return subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
@@ -120,7 +117,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
 
 InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,
                               const std::vector<InnovationStage>& exchanges, double inexact_nats) {
-  const double close_nats = kRivals_nats + kInexactRivals * inexact_nats;
+  const double close_nats = kRivals_nats + inexact_nats;
   InnovationRivals group{{effect}, {final.model.fitted}};
   for (const InnovationStage& other : exchanges) {
     if (group.names.size() == kLargestRivalGroup) break;

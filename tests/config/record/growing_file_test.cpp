@@ -44,6 +44,11 @@ class Growing : public testing::Test {
   const fs::path part_ = folder_ / "r.csv.part";
 };
 
+TEST_F(Growing, IsRefusedWhereAPipeThatNobodyReadsIsInTheWay) {
+  ASSERT_EQ(::mkfifo(part_.c_str(), 0600), 0);
+  EXPECT_THAT(refusal([&] { GrowingFile growing(file_); }), HasSubstr("cannot be written"));
+}
+
 TEST_F(Growing, HasItsNameAndThePermissionsOfTheOneBeforeOnceItIsWhole) {
   write(file_, "before");
   fs::permissions(file_, fs::perms(0640));
@@ -52,6 +57,7 @@ TEST_F(Growing, HasItsNameAndThePermissionsOfTheOneBeforeOnceItIsWhole) {
     growing.append(std::string(5000, 'a'));
     EXPECT_EQ(text_of(file_), "before");
     EXPECT_EQ(fs::file_size(part_), 5000U);
+    EXPECT_EQ(fs::status(part_).permissions() & fs::perms(0077), fs::perms::none);
     growing.append("end\n");
     growing.finish();
   }

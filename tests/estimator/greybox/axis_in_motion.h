@@ -27,8 +27,8 @@ inline plant_sim::ModelFile fast_axis() {
   return model;
 }
 
-/// A motion that goes on while nothing is recorded, of `ratio` times the model's force; `reading_m`
-/// of a position.
+/// A motion that goes on while nothing is recorded, of `ratio` times the model's force; the sensor
+/// shows `reading_m` of a position.
 inline estimator::greybox::Dataset segments_in_motion(
     double ratio, const std::function<double(double)>& reading_m = [](double y_m) { return y_m; }) {
   config::record::Record record;

@@ -57,12 +57,32 @@ double wandering_and_bent_mps(double t_s, double u_V, double y_m) {
   return wandering_mps(t_s, u_V, y_m) + 0.004 * std::cos(4.0 * u_V);
 }
 
+TEST(DisturbanceCheck, ClaimsNoIndependenceThatTheResidualLacks) {
+  auto [c, check] = checked(wandering_mps);
+  ASSERT_TRUE(check.found);
+  c.independence_p = 0.5;
+  EXPECT_THAT(words(c, check).lines, Contains(HasSubstr("follows neither command nor motion")));
+  c.independence_p = 1e-9;
+  EXPECT_THAT(words(c, check).lines,
+              AllOf(Contains(HasSubstr("goes with earlier commands")),
+                    Not(Contains(HasSubstr("follows neither command nor motion")))));
+}
+
+TEST(DisturbanceCheck, AFloorThatIsExceededIsNotReached) {
+  auto [c, check] = checked(wandering_mps);
+  ASSERT_TRUE(check.found);
+  check.found->floor_m = 0.5 * c.rms_m;
+  const Words said = words(c, check);
+  EXPECT_NE(said.judgement, Judgement::at_floor);
+  EXPECT_THAT(said.verdict, StartsWith("Above the noise floor"));
+}
+
 TEST(DisturbanceCheck, PutsTheFloorOfADisturbedRigBesideTheSensors) {
   const auto [c, check] = checked(wandering_mps);
   ASSERT_TRUE(check.found);
   const Words said = words(c, check);
   EXPECT_EQ(said.judgement, Judgement::at_floor);
-  EXPECT_THAT(said.verdict, HasSubstr("what is left follows neither command nor motion"));
+  EXPECT_THAT(said.verdict, StartsWith("At the floor that sensor and disturbance would set"));
   EXPECT_THAT(said.lines, Contains(HasSubstr("a random speed of")));
   EXPECT_THAT(said.lines, Not(Contains(HasSubstr("parameters are off"))));
   EXPECT_THAT(to_text(c, false, false, check), HasSubstr("sensor, disturbance"));

@@ -55,7 +55,7 @@ TEST(Leaps, OfTwoSamplesAreOneGap) {
   EXPECT_THAT(data.notes.back(), HasSubstr("2 samples of the position leap"));
 }
 
-// What is left between leap and gap is too short for a segment.
+// The samples left between leap and gap are too few for a segment.
 TEST(Leaps, BesideAGapTakeTheRestOfTheSegmentAlong) {
   for (const std::size_t leap : {1497U, 1502U}) {
     config::record::Record made = leaping({leap});

@@ -18,8 +18,8 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Nothing is missing beside a gain that grows by a tenth half way; the better model has the gain
-/// of the second half throughout, the model as given that of the first.
+/// Nothing is missing beside a gain that grows by a tenth half way. The model as given has the
+/// first half's gain throughout, the better model the second half's.
 struct ChangingReport : ExampleReport {
   ChangingReport() {
     input.problem = diagnose_test::servo_context({.rate_mps = [](double u_V, double, double t_s) {

@@ -46,6 +46,9 @@ TEST(ForceJump, ADiagnosisSaysWhatSetInAndWhen) {
   ASSERT_FALSE(found.where.empty());
   EXPECT_EQ(found.where[0].site, "force");
   EXPECT_EQ(found.where[0].variable, "time");
+  for (const selection::Localisation& one : found.where) {
+    EXPECT_TRUE(one.or_sites.empty()) << "the place of a load that sets in is known";
+  }
 }
 
 // Without a filter's gain the innovations are those of an integrator: y(k+1) = y + b F, so that a

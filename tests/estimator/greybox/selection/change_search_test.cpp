@@ -154,6 +154,16 @@ TEST(Changes, ANullThatSettlesFromATimeOnIsAnExponential) {
   EXPECT_NEAR(d.changing.front().to, 0.08, 3.0 * d.changing.front().to_error + 1e-6);
 }
 
+TEST(Changes, OfALongRecordSayHowMuchOfItWasSearched) {
+  const SearchContext context = servo_context(
+      {.rate_mps = [](double u_V, double, double t_s) { return kServoGain * (u_V + 4e-4 * t_s); },
+       .samples = 60000});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_TRUE(d.searched_s.has_value());
+  EXPECT_LT(*d.searched_s, 0.5 * 300.0);
+}
+
 TEST(Changes, AnOffsetBesideAGainThatStepsIsAnEffect) {
   const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
                                                [](double) { return 0.1; });
