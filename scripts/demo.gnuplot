@@ -34,8 +34,9 @@ set object 1 rectangle from graph 0,first 1.8 to graph 1,first 2.1 behind \
   fillcolor "#e6f2e6" fillstyle solid noborder
 set label 1 "normal band" at 0.3,2.075 textcolor "#4d7a4d"
 pick(source) = sprintf("< awk -F, '$2==\"%s\" && $3==1 && $4==\"b1\" && $1>2' '%s'", source, estimates)
-# An alarm's bar goes from the transition to active to the next to normal, or to the end.
-bars(name) = sprintf("< awk -F, -v end=%f '$3==\"%s\" && !$6 { if ($5) from=$1; else { print from \",\" $1-from; from=\"\" } } END { if (from) print from \",\" end-from }' '%s'", end_s, name, alarms)
+# An alarm's bar goes from the transition to active to the next to normal or to INVALID, where it is
+# not known, or to the end.
+bars(name) = sprintf("< awk -F, -v end=%f '$3==\"%s\" && !$6 { if ($5 && $4!=\"INVALID\") { if (from==\"\") from=$1 } else if (from!=\"\") { print from \",\" $1-from; from=\"\" } } END { if (from!=\"\") print from \",\" end-from }' '%s'", end_s, name, alarms)
 plot pick("sliding") using 1:($5*1e4) with lines linewidth 2 linecolor "#d9822b" title "0.3 s sliding window", \
      pick("period") using 1:($5*1e4) with points pointtype 7 pointsize 1.1 linecolor "#1f3b57" title "one batch a period", \
      bars("supply_pressure_fast") using 1:(1.64):2:(0) with vectors nohead linewidth 6 linecolor "#d9822b" title "alarm, sliding", \
