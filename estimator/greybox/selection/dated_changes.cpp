@@ -14,10 +14,11 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// The time comes first among what the error goes with.
-void put_time_first(std::vector<Localisation>& where) {
+/// The error goes with the time, which comes first; the change that explains it is its place.
+void locate_change(std::vector<Localisation>& where) {
   std::stable_partition(where.begin(), where.end(),
                         [](const Localisation& one) { return one.variable == "time"; });
+  for (Localisation& one : where) one.or_sites.clear();
 }
 
 /// True where the changes found explain the record and leave clearly less than `before`.
@@ -45,7 +46,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   changed.changing = found.changes;
   changed.where = before.where;
   changed.where_is_whole = true;
-  put_time_first(changed.where);
+  locate_change(changed.where);
   result = std::move(changed);
   return true;
 }
