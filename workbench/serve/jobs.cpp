@@ -32,7 +32,6 @@ bool Jobs::begin(std::function<JobResult()> work, const Done& done) {
     } catch (...) {
       result.error = "the computation failed";
     }
-    running_ = false;
     done(std::move(result));
   });
   return true;

@@ -36,7 +36,10 @@ class Jobs {
   bool diagnose(diagnose::DiagnosisRequest request, Progress progress, const Done& done);
   /// Asks the running one to end with the best so far.
   void cancel() { cancelled_ = true; }
+  /// True from the beginning of a job until its result is taken.
   [[nodiscard]] bool running() const { return running_; }
+  /// Says that the result of the job has been taken: another may begin.
+  void taken() { running_ = false; }
   /// Stops the running one and waits for it.
   void end() {
     cancel();

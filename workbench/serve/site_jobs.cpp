@@ -47,6 +47,7 @@ Site::Json Site::begin_diagnosis(const Json& body) {
 
 void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
   study_lane_.post_kept([this, result = std::move(result), parent, output] {
+    jobs_.taken();
     if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
     std::string error = result.error;
     try {
