@@ -121,6 +121,7 @@ void LaneEnsemble::set_state(std::size_t index, const Values& values) noexcept {
 void LaneEnsemble::set(std::size_t parameter, std::size_t lane, double value) noexcept {
   std::memcpy(static_cast<char*>(entries_[parameter].lanes) + lane * sizeof(double), &value,
               sizeof(double));
+  changed_ = true;
 }
 
 double LaneEnsemble::get(std::size_t parameter, std::size_t lane) const noexcept {

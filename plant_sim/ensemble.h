@@ -37,6 +37,9 @@ class Ensemble {
   virtual void start(double reading_m) noexcept = 0;
   /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
   virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
+  /// Holds a force against extension in each lane beside those of the parameters, until the next
+  /// call; ignored by a plant without forces.
+  virtual void disturb(const Values& force_N) noexcept = 0;
   /// Moves the rod, and with it the sensor's reading, without physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 

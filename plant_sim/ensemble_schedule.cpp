@@ -45,11 +45,6 @@ void EnsembleSchedule::set(std::size_t number, std::size_t lane, double value) n
   changes_[number / kNumbers].numbers[number % kNumbers][lane] = value;
 }
 
-bool EnsembleSchedule::changes(std::size_t parameter) const noexcept {
-  return std::any_of(changes_.begin(), changes_.end(),
-                     [&](const Entry& entry) { return entry.index == parameter; });
-}
-
 void EnsembleSchedule::begin(const Ensemble& ensemble) noexcept {
   for (Entry& entry : changes_) {
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {

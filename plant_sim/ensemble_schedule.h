@@ -22,8 +22,6 @@ class EnsembleSchedule {
   /// The number "change.mass_kg.at_s" of the change of mass_kg; none when unknown.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view dotted) const;
   void set(std::size_t number, std::size_t lane, double value) noexcept;
-  /// True when this parameter of the ensemble changes.
-  [[nodiscard]] bool changes(std::size_t parameter) const noexcept;
 
   /// Takes the ensemble's parameters as those before the changes.
   void begin(const Ensemble& ensemble) noexcept;

@@ -73,6 +73,7 @@ class ForceDrivenAxis {
   Initial initial;
   State state;
   effects::Effects<S> effects;
+  S disturbance_N = 0.0;  ///< force against extension from outside of the model
 
   void reset() {
     state = {initial.y_m, initial.v_mps};
@@ -133,7 +134,7 @@ class ForceDrivenAxis {
     const S from_m = state.y_m;
     const S drive_N = parameters.gain_N_per_V * drive_V;
     const auto rate = [&](const State& x, const S& further_N) -> State {
-      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N;
+      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N - disturbance_N;
       const S force_N =
           effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_},
                               [&] { return motion(x, drive_V); });

@@ -122,6 +122,7 @@ class FourWayCylinder {
   Initial initial;
   State state;
   effects::Effects<S> effects;
+  S disturbance_N = 0.0;  ///< force against extension from outside of the model
 
   /// Resets to the initial state; parameters are kept.
   void reset();

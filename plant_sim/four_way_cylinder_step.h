@@ -114,13 +114,16 @@ S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
   return effects.laps() ? opening_m + S(2.0) * effects.underlap_m(gain) : opening_m;
 }
 
-/// The fastest that the rod can become within the step by the forces of effects.
+/// The fastest that the rod can become within the step by the disturbance and the forces of
+/// effects.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::fast_mps() const {
   const S v_mps = state.v_mps;
-  if (!effects.any()) return abs(v_mps);
-  const S push_N = effects.net_force_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s},
-                                       [&] { return motion(state); });
+  S push_N = S(0.0) - disturbance_N;
+  if (effects.any()) {
+    push_N = effects.net_force_N(state.y_m, {v_mps, S(0.0), push_N, derived_.arrest_kg_per_s},
+                                 [&] { return motion(state); });
+  }
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plant_sim/ensemble.h"
@@ -39,6 +40,8 @@ class LaneEnsemble : public Ensemble {
   /// The same for an integration state.
   void enter_state(const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
+  /// True when a parameter has been set since the last call.
+  [[nodiscard]] bool takes_changes() { return std::exchange(changed_, false); }
   [[nodiscard]] const formula::Formulas& formulas() const { return formulas_; }
 
  private:
@@ -50,6 +53,7 @@ class LaneEnsemble : public Ensemble {
                                                           std::string_view name);
 
   double step_s_;
+  bool changed_ = true;
   formula::Formulas formulas_;
   std::vector<Entry> entries_;
   std::vector<Entry> initial_;
@@ -80,7 +84,7 @@ class InLanes final : public LaneEnsemble {
   }
 
   void start(double reading_m) noexcept override {
-    model_.prepare(step_s());
+    if (takes_changes()) model_.prepare(step_s());
     model_.initial.y_m = reading_m;
     model_.reset();
     const S off_m = model_.effects.reading_m(model_.state.y_m) - reading_m;
@@ -88,10 +92,15 @@ class InLanes final : public LaneEnsemble {
   }
 
   void advance(const Values& u_V, double duration_s) noexcept override {
-    model_.prepare(step_s());
+    if (takes_changes()) model_.prepare(step_s());
     const S u = S::load(u_V.data());
     const auto steps = ::llround(duration_s / step_s());
     for (long long i = 0; i < steps; ++i) model_.step(u);
+  }
+  void disturb(const Values& force_N) noexcept override {
+    if constexpr (requires { model_.disturbance_N; }) {
+      model_.disturbance_N = S::load(force_N.data());
+    }
   }
   void shift(const Values& by_m) noexcept override { model_.state.y_m += S::load(by_m.data()); }
 

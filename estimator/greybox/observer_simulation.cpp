@@ -96,30 +96,17 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     states.push_back(ensemble_->find_state(name).value());
   }
   const auto disturbed = static_cast<Eigen::Index>(states.size());
-  const auto load = ensemble_->find("load_force.force_N");
-  const bool forces = load.has_value();  // otherwise the disturbance is a speed
-  Ensemble::Values own_N{};
-  for (std::size_t lane = 0; load && lane < Ensemble::kLanes; ++lane) {
-    own_N[lane] = ensemble_->get(*load, lane);
-  }
+  // otherwise the disturbance is a speed
+  const bool forces = ensemble_->find("load_force.force_N").has_value();
   const auto line_m = [&](std::size_t lane, Eigen::Index k) {
     return gains[lane]->line_m.size() > 0 ? gains[lane]->line_m[k] : 0.0;
   };
   Ensemble::Values disturbance{};
-  const bool load_changes = load && schedule_.changes(*load);
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
     schedule_.apply(*ensemble_, record.t_s[row], record.sample_time_s);
-    for (std::size_t lane = 0; load_changes && lane < Ensemble::kLanes; ++lane) {
-      own_N[lane] = ensemble_->get(*load, lane);
-    }
     if (segment < record.starts.size() && record.starts[segment] == row) {
-      if (forces) {
-        for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
-          ensemble_->set(*load, lane, own_N[lane]);
-        }
-      }
       ensemble_->start(record.y_m[row] - line_m(0, k));
       disturbance.fill(0.0);
       ++segment;
@@ -144,17 +131,16 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
       ensemble_->set_state(states[i], values);
     }
     predicted_.correction_m[row] = ensemble_->state(position_)[0] - predicted_.rod_m[row];
+    Ensemble::Values force_N{};
     Ensemble::Values moved_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
       disturbance[lane] += gains[lane]->gain(disturbed, k) * error_m[lane];
       const auto column = static_cast<Eigen::Index>(lane);
       const double added = column < added_N.cols() ? added_N(k, column) : 0.0;
-      if (forces) {
-        ensemble_->set(*load, lane, own_N[lane] + disturbance[lane] + added);
-      } else {
-        moved_m[lane] = disturbance[lane] * record.sample_time_s;
-      }
+      force_N[lane] = disturbance[lane] + added;
+      moved_m[lane] = disturbance[lane] * record.sample_time_s;
     }
+    if (forces) ensemble_->disturb(force_N);
     Ensemble::Values u_V;
     u_V.fill(record.u_V[row]);
     for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {
@@ -166,9 +152,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
       disturbance[lane] *= gains[lane]->decay;
     }
   }
-  for (std::size_t lane = 0; forces && lane < Ensemble::kLanes; ++lane) {
-    ensemble_->set(*load, lane, own_N[lane]);
-  }
+  ensemble_->disturb({});
   schedule_.end(*ensemble_);
 }
 
@@ -189,16 +173,11 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
   }
   residuals_m.resize(samples, lanes);
   take(points);
-  const auto found = ensemble_->find("load_force.force_N");
-  const bool loads = added_N.size() > 0 && found.has_value();
-  const std::size_t load = found.value_or(0);
-  double load_N = loads ? ensemble_->get(load, 0) : 0.0;
   const ObserverCorrection observer(*ensemble_, record, observer_per_s_);
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
     schedule_.apply(*ensemble_, record.t_s[row], record.sample_time_s);
-    if (loads && schedule_.changes(load)) load_N = ensemble_->get(load, 0);
     if (segment < record.starts.size() && record.starts[segment] == row) {
       ensemble_->start(record.y_m[row]);
       ++segment;
@@ -229,16 +208,16 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
     for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {
       u_V[static_cast<std::size_t>(lane)] += added_V(k, lane);
     }
-    if (loads) {
+    if (added_N.size() > 0) {
+      Ensemble::Values force_N{};
       for (Eigen::Index lane = 0; lane < added_N.cols(); ++lane) {
-        ensemble_->set(load, static_cast<std::size_t>(lane), load_N + added_N(k, lane));
+        force_N[static_cast<std::size_t>(lane)] = added_N(k, lane);
       }
+      ensemble_->disturb(force_N);
     }
     ensemble_->advance(u_V, record.sample_time_s);
   }
-  for (std::size_t lane = 0; loads && lane < Ensemble::kLanes; ++lane) {
-    ensemble_->set(load, lane, load_N);
-  }
+  if (added_N.size() > 0) ensemble_->disturb({});
   schedule_.end(*ensemble_);
 }
 

@@ -261,6 +261,69 @@ TEST(Ensemble, IsIndependentOfAnotherInASecondThread) {
   EXPECT_EQ(beside_m, two_m);
 }
 
+/// Reading at each sample with a force in lane 3 that alternates, by `hold(ensemble, force_N)`.
+template <class Hold>
+std::vector<Ensemble::Values> alternating_force(const std::string& plant, const Hold& hold) {
+  ModelFile model;
+  model.plant = plant;
+  const auto ensemble = make_ensemble(model, kStep_s);
+  if (const auto friction = ensemble->find("friction.coulomb_N")) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) ensemble->set(*friction, lane, 40.0);
+  }
+  ensemble->start(0.3);
+  std::vector<Ensemble::Values> readings_m;
+  for (int k = 0; k < 400; ++k) {
+    hold(*ensemble, k % 50 < 25 ? 300.0 : -200.0);
+    Ensemble::Values u_V;
+    u_V.fill(0.5 * std::sin(k * 0.03));
+    ensemble->advance(u_V, kSample_s);
+    readings_m.push_back(ensemble->reading_m());
+  }
+  return readings_m;
+}
+
+TEST(Ensemble, ADisturbanceIsALoadOfItsLane) {
+  const auto disturbed = [](Ensemble& ensemble, double force_N) {
+    Ensemble::Values forces_N{};
+    forces_N[3] = force_N;
+    ensemble.disturb(forces_N);
+  };
+  const auto loaded = [](Ensemble& ensemble, double force_N) {
+    ensemble.set(ensemble.find("load_force.force_N").value(), 3, force_N);
+  };
+  const auto alone = [](Ensemble& /*ensemble*/, double /*force_N*/) {};
+  for (const char* const plant :
+       {"hydraulic_actuator", "hydraulic_cylinder", "force_driven_axis"}) {
+    SCOPED_TRACE(plant);
+    const auto one_m = alternating_force(plant, disturbed);
+    const auto other_m = alternating_force(plant, loaded);
+    const auto alone_m = alternating_force(plant, alone);
+    double moved_m = 0.0;
+    for (std::size_t k = 0; k < one_m.size(); ++k) {
+      ASSERT_NEAR(one_m[k][3], other_m[k][3], kAgree) << "sample " << k;
+      ASSERT_EQ(one_m[k][2], alone_m[k][2]) << "sample " << k;
+      moved_m = std::fmax(moved_m, std::fabs(one_m[k][3] - one_m[k][2]));
+    }
+    EXPECT_GT(moved_m, 1e-5);
+  }
+  EXPECT_EQ(alternating_force("velocity_servo", disturbed),
+            alternating_force("velocity_servo", alone));
+}
+
+TEST(Ensemble, TakesAParameterThatIsSetBetweenSamples) {
+  const auto ensemble = make_ensemble(ModelFile(), kStep_s);
+  ensemble->start(0.3);
+  Ensemble::Values u_V;
+  u_V.fill(1.0);
+  ensemble->advance(u_V, kSample_s);
+  ensemble->set(ensemble->find("valve_gain_m_per_V").value(), 1, 0.0);
+  for (int k = 0; k < 100; ++k) ensemble->advance(u_V, kSample_s);
+  const Ensemble::Values before_m = ensemble->reading_m();
+  for (int k = 0; k < 100; ++k) ensemble->advance(u_V, kSample_s);
+  EXPECT_NEAR(ensemble->reading_m()[1], before_m[1], 1e-6);
+  EXPECT_GT(std::fabs(ensemble->reading_m()[0] - before_m[0]), 1e-3);
+}
+
 TEST(Ensemble, RunsOnTheBaselineAndTakesTheWidestThatRunsHere) {
   EXPECT_TRUE(runs_here(InstructionSet::baseline));
   EXPECT_TRUE(runs_here(fastest_here()));

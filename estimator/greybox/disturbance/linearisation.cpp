@@ -104,9 +104,11 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
   const std::size_t count = states.size();
   const std::size_t force_lane = kSmooth + count + 1;
   const std::size_t supply_lane = force_lane + 1;
-  if (const auto load = ensemble->find("load_force.force_N")) {
+  if (ensemble->find("load_force.force_N")) {
     result.force = true;
-    ensemble->set(*load, force_lane, ensemble->get(*load, force_lane) + kForce_N);
+    Ensemble::Values force_N{};
+    force_N[force_lane] = kForce_N;
+    ensemble->disturb(force_N);
   }
   if (const auto supply = ensemble->find("supply_pressure_Pa")) {
     result.supply = true;

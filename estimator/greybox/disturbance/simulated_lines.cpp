@@ -55,9 +55,8 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
                                  const std::vector<Eigen::Vector2d>& waves, Correction correction) {
   const std::unique_ptr<Ensemble> ensemble =
       model_ensemble(model, record.sample_time_s, parameters, theta);
-  const auto load = ensemble->find("load_force.force_N");
+  const bool forces = ensemble->find("load_force.force_N").has_value();
   const auto supply = ensemble->find("supply_pressure_Pa");
-  const double load_N = load ? ensemble->get(*load, kPlain) : 0.0;
   const double supply_Pa = supply ? ensemble->get(*supply, kPlain) : 0.0;
   Eigen::VectorXd moved_m(static_cast<Eigen::Index>(record.size()));
   const ObserverCorrection observer(*ensemble, record, kObserver_per_s);
@@ -66,7 +65,6 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
     const LineValues line = values_at(record.t_s[k], lines, waves);
     if (segment < record.starts.size() && record.starts[segment] == k) {
       // both lanes start from rest without lines
-      if (load) ensemble->set(*load, kMoved, load_N);
       if (supply) ensemble->set(*supply, kMoved, supply_Pa);
       ensemble->start(record.y_m[k]);
       ++segment;
@@ -80,12 +78,14 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
       error_m[kMoved] = record.y_m[k] - reading_m[kMoved] - line.reading_m;
     }
     observer.apply(*ensemble, k, error_m);
-    if (!load) {
+    if (!forces) {
       Ensemble::Values moved{};
       moved[kMoved] = line.force * record.sample_time_s;
       ensemble->shift(moved);
     }
-    if (load) ensemble->set(*load, kMoved, load_N + line.force);
+    Ensemble::Values force_N{};
+    force_N[kMoved] = line.force;
+    ensemble->disturb(force_N);
     if (supply) ensemble->set(*supply, kMoved, supply_Pa + line.supply_Pa);
     Ensemble::Values u_V;
     u_V.fill(record.u_V[k]);

@@ -161,21 +161,24 @@ bool leaves_a_line(const SearchContext& context, const InnovationSearch& search)
   return !lines.empty() && lines.front().gain_nats > search.curve_nats;
 }
 
-/// The beginning of a search by simulations: with a second effect too where the first leaves more
-/// than a disturbance or a line, of which simulations know nothing.
-SearchStart begin_search(const SearchContext& context) {
-  SearchStart start = start_search(context);
-  const ModelStage& stage = start.branch.stage;
-  if (stage.added.size() != 1 || start.branch.stalled || is_explained(context, stage) ||
-      context.cancelled()) {
-    return start;
-  }
+/// True where the stage leaves more than a disturbance or a line, of which simulations know
+/// nothing.
+bool leaves_physics_to_simulations(const SearchContext& context, const ModelStage& stage) {
+  if (is_explained(context, stage) || context.cancelled()) return false;
   const SearchContext fitted = without_holdouts(context);
   InnovationSearch left;
   left.final = settled(fitted, stage, {}, 1, wide(context.options.threads));
-  const bool known = std::isfinite(left.final.minus_two_log);
-  if (known) weigh_remainder(fitted, left);
-  if (!known || (left.physics_missing() && !leaves_a_line(fitted, left))) {
+  if (!std::isfinite(left.final.minus_two_log)) return true;
+  weigh_remainder(fitted, left);
+  return left.physics_missing() && !leaves_a_line(fitted, left);
+}
+
+/// The beginning of a search by simulations, with a second effect too where the first leaves more.
+SearchStart begin_search(const SearchContext& context) {
+  SearchStart start = start_search(context);
+  const SearchBranch& branch = start.branch;
+  if (branch.stage.added.size() == 1 && !branch.stalled &&
+      leaves_physics_to_simulations(context, branch.stage)) {
     add_second_effect(context, start);
   }
   return start;
@@ -313,6 +316,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     }
   }
   if (widen_file_values(search, start, context.problem)) search = for_search(context);
+  if (start.branch.stage.added.size() == kBeforeLaws &&
+      leaves_physics_to_simulations(search, start.branch.stage)) {
+    prefer_pair(search, start);
+  }
   const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);

@@ -139,6 +139,16 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
   return true;
 }
 
+/// True where the search ends at what another one holds.
+bool ends_at_held(const SearchContext& context, const ModelStage& held,
+                  const InnovationSearch& search, const SearchLimits& limits) {
+  if (!limits.ends_at || held.added.empty() || context.cancelled()) return false;
+  const InnovationStage stage =
+      settled(context, held, search.before.noise, 1, wide(context.options.threads));
+  return penalised(stage) < penalised(search.before) &&
+         limits.ends_at(stage, inexact_nats(context, search, stage));
+}
+
 void note_gains(InnovationSearch& search, const InnovationStage& final) {
   const std::set<std::string> added(final.model.added.begin(), final.model.added.end());
   for (const InnovationRound& round : search.rounds) {
@@ -189,6 +199,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
           more && limits.ends_at && limits.ends_at(stage, inexact_nats(context, search, stage));
     }
   };
+  search.ended_early = ends_at_held(context, held.stage, search, limits);
   extend_fully();
   if (!search.ended_early && take_line_for_resonance(context, search, stage)) extend_fully();
   if (!search.ended_early) take_held(context, held.stage, evidence_nats(), stage, search.rounds);

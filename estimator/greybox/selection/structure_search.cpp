@@ -238,6 +238,12 @@ void add_second_effect(const SearchContext& context, SearchStart& start) {
   if (!start.branch.stalled) extend_branch(context, start.branch, false, kBeforePairSearch);
 }
 
+void prefer_pair(const SearchContext& context, SearchStart& start) {
+  CrossValidation halves(context);
+  auto pair = start_with_pair(context, halves, start.first, start.branch);
+  if (pair && is_explained(context, pair->stage)) start.branch = std::move(*pair);
+}
+
 StructureSearch abandon_search(const SearchContext& context, const SearchStart& start) {
   StructureSearch search;
   search.nominal_rms_m = start.nominal_rms_m;

@@ -94,6 +94,8 @@ struct SearchStart {
 [[nodiscard]] SearchStart start_search(const SearchContext& context);
 /// A second effect beside the first, where one helps at all.
 void add_second_effect(const SearchContext& context, SearchStart& start);
+/// Begins with a pair of effects instead, where one explains the record.
+void prefer_pair(const SearchContext& context, SearchStart& start);
 /// Further effects, pairs of effects and other beginnings, as far as they lead.
 void extend_search(const SearchContext& context, SearchStart& start);
 /// The model that the search has come to. Where noise does not explain what it leaves, its effects
