@@ -87,10 +87,10 @@ function(spoolwatch_program name)
   spoolwatch_precompile(${name} product)
 endfunction()
 
-# spoolwatch_test(name [LABELS...] [TIMEOUT s]): a GoogleTest program; each of its tests becomes a
-# ctest. Its sources come from spoolwatch_tests().
+# spoolwatch_test(name [LONG] [LABELS...] [TIMEOUT s]): a GoogleTest program; each of its tests becomes a
+# ctest; in a LONG one, suites whose name begins with Long are slow ones. Its sources come from spoolwatch_tests().
 function(spoolwatch_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "LONG" "TIMEOUT" "LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -107,7 +107,12 @@ function(spoolwatch_test name)
   if(realtime IN_LIST ARG_LABELS)  # two loops of highest priority would disturb each other
     list(APPEND properties RESOURCE_LOCK realtime)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+  if(ARG_LONG)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+      TEST_FILTER Long* TEST_LIST ${name}_long PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS slow)
+    set(filter TEST_FILTER -Long*)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${filter}
     PROPERTIES ${properties})
 endfunction()
 

@@ -78,7 +78,7 @@ TEST(HiddenSecondMass, IsNotFoundInARigidAxisNorInADelayedOneNorInASpring) {
   EXPECT_THAT(sprung.missing, testing::Not(testing::Contains("second_mass"))) << said(sprung);
 }
 
-TEST(HiddenSecondMass, IsNotNamedWhereTheMountOfTheSensorShakes) {
+TEST(LongHiddenSecondMass, IsNotNamedWhereTheMountOfTheSensorShakes) {
   const selection::Diagnosis d = diagnose_test::found_in(diagnose_test::context_of(
       "motion=multisine,length_s=12,friction.coulomb_N=105,friction.static_N=140,"
       "outside.force_N=30,outside.shake_m=9e-6,outside.shake_Hz=42.5",

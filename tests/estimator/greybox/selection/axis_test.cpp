@@ -68,7 +68,7 @@ SearchContext axis_context(const Gain& gain_N_per_V, double load_N) {
 
 double fades(double t_s) { return t_s < 11.7 ? kGain_N_per_V : 0.85 * kGain_N_per_V; }
 
-TEST(AxisGain, FadesBesideALoad) {
+TEST(LongAxisGain, FadesBesideALoad) {
   const SearchContext context = axis_context(fades, 18.0);
   const Diagnosis d = diagnose(context.problem, context.options);
   EXPECT_EQ(d.verdict, Verdict::changing);

@@ -241,7 +241,7 @@ TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
 }
 
 // As the motion grows with the time, the drift looks like a law of the motion.
-TEST(Changes, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
+TEST(LongChanges, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
   const SearchContext context = context_of(
       "motion=chirp,length_s=30,left_out=gain_drift,left_out.size=-0.09,outside.force_N=25,"
       "outside.corner_Hz=2.5,outside.shake_m=1.1e-5,outside.shake_Hz=52.3,plant.mass_kg=52,"
@@ -258,7 +258,7 @@ TEST(Changes, AGainThatDriftsDuringAChirpIsFoundOnceLawsAreRuledOut) {
 }
 
 // On the way to the gain's drift a change of the mass is taken.
-TEST(Changes, AChangeThatStoodForAnotherIsDropped) {
+TEST(LongChanges, AChangeThatStoodForAnotherIsDropped) {
   const SearchContext context = context_of(
       "motion=chirp,mismatched=1,left_out=gain_drift,left_out.size=-0.07712725666,"
       "outside.force_N=30.11193319,outside.corner_Hz=3.054727037,outside.shake_m=9.92996e-6,"
@@ -275,7 +275,7 @@ TEST(Changes, AChangeThatStoodForAnotherIsDropped) {
   EXPECT_NEAR(found->changes.front().to / found->changes.front().from, 1.0 - 0.0771, 0.01);
 }
 
-TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
+TEST(LongChanges, WhatDisturbsTheRigBesideAChangeIsNamed) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,plant.damping_N_s_per_m=1000,"
       "at9:plant.damping_N_s_per_m=1700,outside.shake_m=2e-5,outside.shake_Hz=43.217");
@@ -291,7 +291,7 @@ TEST(Changes, WhatDisturbsTheRigBesideAChangeIsNamed) {
 }
 
 // The offset is a candidate behind lines as well as without them.
-TEST(Changes, ANullThatStepsIsFoundBesideAStrongLine) {
+TEST(LongChanges, ANullThatStepsIsFoundBesideAStrongLine) {
   const SearchContext context = context_of(
       "motion=multisine,length_s=20,at9:null_bias.offset_V=0.05,"
       "outside.shake_m=6e-5,outside.shake_Hz=37.411");

@@ -98,7 +98,7 @@ TEST(TrialMemo, GivesWhatTheSearchWouldFindAnew) {
 }
 
 // A flow at its limit passes no pulsation; a linear response to it would leave its difference.
-TEST(InnovationSearch, APulsationBehindALimitedFlowLeavesNothing) {
+TEST(LongInnovationSearch, APulsationBehindALimitedFlowLeavesNothing) {
   const InnovationSearch found = searched(
       "motion=multisine,length_s=15,flow_saturation.limit_m3ps=6.33e-5,"
       "outside.pulsation_Pa=130000,outside.pulsation_Hz=19.3725",

@@ -183,7 +183,7 @@ TEST(Laws, NoLawCompetesWithTheRightEffect) {
 }
 
 // A valve whose gain falls as it opens draws less, as from a supply that droops.
-TEST(Laws, ALawOfTheOpeningCompetesWithAnEffectOfTheSupply) {
+TEST(LongLaws, ALawOfTheOpeningCompetesWithAnEffectOfTheSupply) {
   const FewEffects curved =
       searched_with({"supply_droop"},
                     "motion=fast_steps,length_s=30,left_out=gain_curvature,left_out.size=0.05,"
@@ -196,7 +196,7 @@ TEST(Laws, ALawOfTheOpeningCompetesWithAnEffectOfTheSupply) {
 }
 
 // Beside a disturbance no model leaves less than that.
-TEST(Laws, ALawThatLeavesADisturbanceNeedNotLeaveLessThanWhatIsUnexplained) {
+TEST(LongLaws, ALawThatLeavesADisturbanceNeedNotLeaveLessThanWhatIsUnexplained) {
   const SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=15,left_out=cubic_damping,outside.force_N=30", 31);
   const ModelStage first = first_stage(context);

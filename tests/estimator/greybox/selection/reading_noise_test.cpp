@@ -45,7 +45,7 @@ TEST(ReadingNoise, AHumLeavesErrorsThatContainTheRig) {
   }
 }
 
-TEST(ReadingNoise, AReadingThatWandersIsNoMissingEffect) {
+TEST(LongReadingNoise, AReadingThatWandersIsNoMissingEffect) {
   truth::Record record = truth::simulate(truth::parse_case("motion=multisine,length_s=20", 82));
   constexpr double kWalk_m = 1.5e-6;
   std::mt19937 random(83);

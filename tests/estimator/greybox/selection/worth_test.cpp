@@ -13,7 +13,7 @@ using diagnose_test::context_with;
 
 constexpr std::size_t kSeed = 3;
 
-TEST(Worth, ACommandThatIsLoggedInTenthsOfAVoltIsNoMissingEffect) {
+TEST(LongWorth, ACommandThatIsLoggedInTenthsOfAVoltIsNoMissingEffect) {
   truth::Record record = truth::simulate(truth::parse_case("motion=multisine,length_s=6", kSeed));
   for (double& u_V : record.u_V) u_V = 0.1 * std::round(10.0 * u_V);
   SearchContext context = context_with(diagnose_test::dataset_of(record));
