@@ -118,14 +118,17 @@ bool improves_on(const SearchBranch& other, const SearchBranch& best) {
   return other.stage.fitted.validation_rms_m < (1.0 - kRivals) * best.stage.fitted.validation_rms_m;
 }
 
-/// Pair of effects as the beginning, where a stepwise search has not explained the record.
-std::optional<SearchBranch> start_with_pair(const SearchContext& context, CrossValidation& halves,
-                                            const ModelStage& first, const SearchBranch& best) {
+/// Pair of effects as the beginning, where a stepwise search has not explained the record and the
+/// pair leaves at most `most_m`.
+std::optional<SearchBranch> start_with_pair(
+    const SearchContext& context, CrossValidation& halves, const ModelStage& first,
+    const SearchBranch& best, double most_m = std::numeric_limits<double>::infinity()) {
   if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
   std::vector<std::string> begun;  // beginning with which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = pair_search(context, first, begun);
   if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
+  if (!(pairs.front().validation_rms_m <= most_m)) return {};
   return branch_from(context, halves, first, pairs.front(), best.rounds.front());
 }
 
@@ -240,7 +243,8 @@ void add_second_effect(const SearchContext& context, SearchStart& start) {
 
 void prefer_pair(const SearchContext& context, SearchStart& start) {
   CrossValidation halves(context);
-  auto pair = start_with_pair(context, halves, start.first, start.branch);
+  std::optional<SearchBranch> pair = start_with_pair(
+      context, halves, start.first, start.branch, kNearFloor * context.problem.data.noise_floor_m);
   if (pair && is_explained(context, pair->stage)) start.branch = std::move(*pair);
 }
 
