@@ -82,6 +82,7 @@ void LaneEnsemble::take(const ModelFile& model) {
       if (entry.name == name) std::memcpy(entry.lanes, every.data(), sizeof(every));
     }
   };
+  changed_ = true;
   for (const NamedValue& given : model.parameters) assign(entries_, given.name, given.value);
   for (const ModelFile::Effect& effect : model.effects) {
     if (!effect.present) continue;

@@ -88,7 +88,7 @@ function(spoolwatch_program name)
 endfunction()
 
 # spoolwatch_test(name [LONG] [LABELS...] [TIMEOUT s]): a GoogleTest program; each of its tests becomes a
-# ctest; in a LONG one, suites whose name begins with Long are slow ones. Its sources come from spoolwatch_tests().
+# ctest; in a LONG one, suites whose name begins with Long have the label long. Its sources come from spoolwatch_tests().
 function(spoolwatch_test name)
   cmake_parse_arguments(ARG "LONG" "TIMEOUT" "LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
@@ -109,7 +109,7 @@ function(spoolwatch_test name)
   endif()
   if(ARG_LONG)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-      TEST_FILTER Long* TEST_LIST ${name}_long PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS slow)
+      TEST_FILTER Long* TEST_LIST ${name}_long PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS};long")
     set(filter TEST_FILTER -Long*)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${filter}

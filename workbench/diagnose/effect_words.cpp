@@ -47,7 +47,9 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
   std::string text;
   for (const selection::ParameterValue& p : diagnosis.parameters) {
     if (p.name.rfind(effect + ".", 0) != 0) continue;
-    if (!text.empty() && p.std_error > kMostError * std::abs(p.value)) continue;
+    // a value without an error is one that the record does not show, or stands at its bound
+    const bool unseen = std::isnan(p.std_error) && !p.at_bound;
+    if (!text.empty() && (unseen || p.std_error > kMostError * std::abs(p.value))) continue;
     text += (text.empty() ? ": " : ", ") + config::units::parameter_words(p.name) + " " +
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");

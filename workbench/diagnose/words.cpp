@@ -213,13 +213,21 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
 /// Parameters that the record has moved far from what the file says of them.
 void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   constexpr double kFar_sds = 2.5;
+  std::vector<std::string> at_bound;
   for (const selection::ParameterValue& p : d.parameters) {
+    if (p.at_bound && p.name.find('.') == std::string::npos) at_bound.push_back(p.name);
     if (std::abs(p.prior_sds) < kFar_sds) continue;
     out.push_back(fmt::format(
         "{} ends {:.1f} standard deviations of its prior {} the file's value: the file is wrong "
         "about it, or something that acts as it does is missing.",
         p.name, std::abs(p.prior_sds), p.prior_sds > 0.0 ? "above" : "below"));
   }
+  if (at_bound.empty()) return;
+  const bool one = at_bound.size() == 1;
+  out.push_back(config::schema::listed(at_bound) +
+                (one ? " ends at its bound" : " end at their bounds") +
+                ": the errors of the others do not contain by how much " +
+                (one ? "it is off." : "they are off."));
 }
 
 std::string verdict_words(const selection::Diagnosis& d) {

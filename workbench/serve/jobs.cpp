@@ -32,7 +32,12 @@ bool Jobs::begin(std::function<JobResult()> work, const Done& done) {
     } catch (...) {
       result.error = "the computation failed";
     }
-    done(std::move(result));
+    try {
+      done(std::move(result));
+    } catch (...) {  // nobody will take it
+      running_ = false;
+      throw;
+    }
   });
   return true;
 }

@@ -18,6 +18,18 @@ using config::schema::UsageError;
 
 constexpr std::chrono::seconds kFolderPeriod{1};
 
+/// Takes the result of a job at the end of a scope, however that ends.
+class Taken {
+ public:
+  explicit Taken(Jobs& jobs) : jobs_(jobs) {}
+  ~Taken() { jobs_.taken(); }
+  Taken(const Taken&) = delete;
+  Taken& operator=(const Taken&) = delete;
+
+ private:
+  Jobs& jobs_;
+};
+
 }  // namespace
 
 Site::Json Site::begin_fit(const Json& body) {
@@ -47,7 +59,7 @@ Site::Json Site::begin_diagnosis(const Json& body) {
 
 void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
   study_lane_.post_kept([this, result = std::move(result), parent, output] {
-    jobs_.taken();
+    const Taken taken(jobs_);
     if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
     std::string error = result.error;
     try {
@@ -59,11 +71,13 @@ void Site::finish_job(JobResult result, const std::string& parent, const std::st
         show_result(result.summary);
         last_result_["unsaved"] = error;
         unsaved_.push_back({result, parent});
+        jobs_.taken();
         return publish_state();
       }
     }
     folder_.release(output);
     show_result(error.empty() ? result.summary : Json{{"kind", "error"}, {"words", error}});
+    jobs_.taken();
     publish_state();
   });
 }

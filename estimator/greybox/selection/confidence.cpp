@@ -57,6 +57,12 @@ bool is_same_site(const std::string& one, const std::string& other) {
   return one == other || (is_flow(one) && is_flow(other));
 }
 
+/// True for a lag beside which another one may be what is missing.
+bool may_be_another_lag(const Localisation& where, const std::string& effect) {
+  return (effect == "transport_delay" || effect == "drive_lag") &&
+         std::find(where.or_sites.begin(), where.or_sites.end(), "lag") != where.or_sites.end();
+}
+
 /// True when most of the remaining error enters as this effect does: the law there may be another,
 /// or an offset may drift in time.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
@@ -64,7 +70,7 @@ bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect)
   const Localisation& where = diagnosis.where.front();
   const std::string site = site_of(diagnosis, effect);
   return where.explained_ratio > kMostOfRemainder &&
-         (where.site == site ||
+         (where.site == site || may_be_another_lag(where, effect) ||
           (where.variable == "time" && effect == "null_bias" && is_same_site(where.site, site)));
 }
 

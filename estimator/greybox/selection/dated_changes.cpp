@@ -21,6 +21,19 @@ void locate_change(std::vector<Localisation>& where) {
   for (Localisation& one : where) one.or_sites.clear();
 }
 
+/// The values of the changes with the errors of the final parameters.
+void take_final_errors(Diagnosis& changed) {
+  const auto error_of = [&](const std::string& name, double& error) {
+    for (const ParameterValue& p : changed.parameters) {
+      if (p.name == name) error = p.std_error;
+    }
+  };
+  for (ParameterChange& change : changed.changing) {
+    error_of(change.parameter, change.from_error);
+    error_of("change." + change.parameter + ".value", change.to_error);
+  }
+}
+
 /// True where the changes found explain the record and leave clearly less than `before`.
 bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis& before,
                   Diagnosis& result) {
@@ -44,6 +57,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
     return is_change(name) || changes_effect(found.changes, name);
   });
   changed.changing = found.changes;
+  take_final_errors(changed);
   changed.where = before.where;
   changed.where_is_whole = true;
   locate_change(changed.where);

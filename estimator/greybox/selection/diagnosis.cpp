@@ -42,7 +42,7 @@ constexpr std::size_t kBeforeLaws = 2;
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
 /// nearly the same, the disturbance in both decides.
 void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
-  if (innovations.final.model.added.empty() || search.cancelled()) return;
+  if (innovations.final.model.added.empty()) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
   // the model without effects, with the lines that were known before the first of them
   const auto plain_round =
@@ -69,15 +69,16 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   SearchLimits limits;
   bool asked = false;
   bool learned = false;
-  limits.ends_at = [&](const InnovationStage& stage, double inexact_nats) {
-    if (asked || search.problem.effects_only || stage.model.added.size() < kBeforeLaws ||
-        !leaves_much_physics(stage, inexact_nats)) {
+  const auto ends_at = [&](const InnovationStage& stage, double inexact_nats) {
+    if (asked || stage.model.added.size() < kBeforeLaws ||
+        !leaves_much_physics(stage, inexact_nats) || !may_learn_early(search, stage)) {
       return false;
     }
     asked = true;
     learned = learn_law_early(search, first, stage, start.branch.stage, result);
     return learned;
   };
+  if (!search.problem.effects_only) limits.ends_at = ends_at;
   InnovationSearch innovations = search_innovations(search, first, start.branch, limits);
   if (learned) {
     if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
@@ -316,7 +317,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     }
   }
   if (widen_file_values(search, start, context.problem)) search = for_search(context);
-  if (start.branch.stage.added.size() == kBeforeLaws &&
+  if (start.branch.stage.added.size() > 1 &&
       leaves_physics_to_simulations(search, start.branch.stage)) {
     prefer_pair(search, start);
   }

@@ -139,10 +139,10 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
   return true;
 }
 
-/// True where the search ends at what another one holds.
+/// True where the search ends at the several effects that another one holds.
 bool ends_at_held(const SearchContext& context, const ModelStage& held,
                   const InnovationSearch& search, const SearchLimits& limits) {
-  if (!limits.ends_at || held.added.empty() || context.cancelled()) return false;
+  if (!limits.ends_at || held.added.size() < 2 || context.cancelled()) return false;
   const InnovationStage stage =
       settled(context, held, search.before.noise, 1, wide(context.options.threads));
   return penalised(stage) < penalised(search.before) &&

@@ -111,11 +111,14 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis
   return take_better(context, first, search_curve(context, named), result);
 }
 
+bool may_learn_early(const SearchContext& context, const InnovationStage& stage) {
+  // parameters may differ between records, and change within one, before a law is missing
+  return context.problem.data.fitted_records == 1 && motion_explains_more(stage);
+}
+
 bool learn_law_early(const SearchContext& context, const ModelStage& first,
                      const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   constexpr std::size_t kMostEffects = 2;
-  // parameters may differ between records, and change within one, before a law is missing
-  if (context.problem.data.fitted_records > 1 || !motion_explains_more(stage)) return false;
   const std::optional<LawSearch> found =
       search_laws(context, first, "", stage.model.added, LawChoice::against_effects, kMostEffects);
   if (!found) return false;

@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/workbench/diagnose/example_outcome.h"
 
 namespace workbench::diagnose {
@@ -15,6 +17,26 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+
+TEST(Words, WhatTheRecordDoesNotShowIsNoValue) {
+  ExampleReport outcome;
+  for (selection::ParameterValue& p : outcome.diagnosis.parameters) {
+    if (p.name != "friction.stribeck_mps") continue;
+    p.at_bound = false;
+    p.std_error = std::nan("");
+  }
+  EXPECT_EQ(verdict_words(outcome.diagnosis),
+            "Missing: friction: Coulomb 145.3 +- 1.9 N, static 181 +- 4 N.");
+}
+
+TEST(Words, ErrorsDoNotContainWhatAParameterAtItsBoundIsOff) {
+  ExampleReport outcome;
+  const auto bounds = HasSubstr("the errors of the others do not contain");
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(bounds)));
+  ASSERT_EQ(outcome.diagnosis.parameters.front().name.find('.'), std::string::npos);
+  outcome.diagnosis.parameters.front().at_bound = true;
+  EXPECT_THAT(remarks(outcome), Contains(bounds));
+}
 
 TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
   const ExampleReport outcome;

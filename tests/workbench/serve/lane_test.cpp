@@ -36,17 +36,33 @@ TEST(Jobs, AnExceptionBehindAJobEndsNothing) {
   const auto fails = [&](const JobResult& result) {
     EXPECT_NE(result.error, "");
     EXPECT_TRUE(jobs.running()) << "until its result is taken";
-    jobs.taken();
     ended.release();
     throw std::runtime_error("behind the job");
   };
   for (int i = 0; i < 2; ++i) {
+    while (jobs.running()) std::this_thread::yield();
     fit::FitRequest request;
     request.model = "none.toml";
     request.records = {"none.csv"};
     ASSERT_TRUE(jobs.fit(std::move(request), {}, fails));
     ended.acquire();
   }
+}
+
+TEST(Jobs, OneRunsUntilItsResultIsTaken) {
+  Jobs jobs;
+  std::binary_semaphore ended(0);
+  const auto ends = [&](const JobResult& /*result*/) { ended.release(); };
+  fit::FitRequest request;
+  request.model = "none.toml";
+  request.records = {"none.csv"};
+  ASSERT_TRUE(jobs.fit(request, {}, ends));
+  ended.acquire();
+  EXPECT_TRUE(jobs.running());
+  EXPECT_FALSE(jobs.fit(request, {}, ends));
+  jobs.taken();
+  ASSERT_TRUE(jobs.fit(request, {}, ends));
+  ended.acquire();
 }
 
 TEST(Lane, AnExceptionEndsItsOwnWorkAlone) {
