@@ -32,6 +32,27 @@ std::string fails_where(const validation::SignificantRegion& failing) {
          present::percent(failing.figures.time_share) + " of the time.";
 }
 
+/// The part of the record in which nearly all of the position error lies, in words; empty: there is
+/// none. An error that has grown stands still, so that the speed error does not show it.
+std::string part_of_record(const validation::Comparison& c) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kPart = 0.5;
+  for (const validation::Region& region : c.regions) {
+    if (region.variable != "time") continue;
+    for (std::size_t i = 0; i < region.bins.size(); ++i) {
+      const validation::Bin& bin = region.bins[i];
+      if (bin.error_share < kNearlyAll || bin.time_share > kPart) continue;
+      validation::SignificantRegion part;
+      part.ranges = {
+          {region.variable, bin.from, bin.to, bin.name, i == 0, i + 1 == region.bins.size()}};
+      return present::where(part) + ": " + present::percent(bin.error_share) +
+             " of the squared position error lies there, in " + present::percent(bin.time_share) +
+             " of the time.";
+    }
+  }
+  return "";
+}
+
 /// A motion against the model's: a turned sign, unless the command drives the motion.
 std::string other_way(double gain_ratio, const greybox::CommandResponse& response) {
   const std::string text = "the " + units::moving_part() + " moves the other way than the model, " +
@@ -209,6 +230,7 @@ Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
     return w;
   }
   const bool somewhere = c.headline.significant;
+  const std::string part = part_of_record(c);
   const std::string plain = plain_words(c);
   if (!plain.empty()) {
     w.judgement = Judgement::fails_throughout;
@@ -217,6 +239,9 @@ Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
   } else if (somewhere) {
     w.judgement = Judgement::fails_somewhere;
     w.verdict = "Fails " + fails_where(c.headline);
+  } else if (!part.empty()) {
+    w.judgement = Judgement::fails_somewhere;
+    w.verdict = "Fails " + part;
   } else if (c.independence_p >= kSignificant && !check.asked) {
     w.verdict =
         "Above the noise floor, yet nothing that is left follows the command, position, velocity "

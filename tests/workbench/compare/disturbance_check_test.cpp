@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -117,6 +118,22 @@ TEST(DisturbanceCheck, RulesOutADisturbanceInWordsOnceItIsRuledOut) {
   EXPECT_THAT(said.verdict, AllOf(StartsWith("Fails"), Not(HasSubstr("disturbance"))));
   EXPECT_THAT(said.lines, Contains(HasSubstr("no disturbance of the rig accounts for it")));
   EXPECT_THAT(said.lines, Not(Contains(HasSubstr("such as the sensor"))));
+}
+
+TEST(CompareWords, NameThePartOfTheRecordThatHoldsThePositionError) {
+  validation::Comparison c = checked(wandering_mps).comparison;
+  c.headline.significant = false;
+  c.independence_p = 1e-9;
+  EXPECT_THAT(words(c, {.asked = true}).verdict, StartsWith("Fails throughout"));
+  const auto times = std::find_if(c.regions.begin(), c.regions.end(),
+                                  [](const auto& region) { return region.variable == "time"; });
+  ASSERT_NE(times, c.regions.end());
+  ASSERT_GT(times->bins.size(), 2U);
+  for (validation::Bin& bin : times->bins) bin.error_share = 0.0;
+  times->bins.front().error_share = 0.96;
+  const Words said = words(c, {.asked = true});
+  EXPECT_EQ(said.judgement, Judgement::fails_somewhere);
+  EXPECT_THAT(said.verdict, HasSubstr("96 % of the squared position error lies there"));
 }
 
 TEST(DisturbanceCheck, IsNotAskedWhereItWouldTellNothing) {
