@@ -19,6 +19,8 @@ using Eigen::VectorXd;
 
 /// Number of the largest trial sizes of an effect that are used.
 constexpr Index kPairSizes = 4;
+/// Share of the distance between two sizes by which a linear estimate may lie beyond them.
+constexpr double kBeyondSizes = 0.2;
 /// Pairs that are screened on the whole record, the best of the screening segment.
 constexpr std::size_t kLookedAt = 16;
 /// Pairs that are fitted, each from the best start seen from either base.
@@ -56,35 +58,69 @@ std::vector<Effect> effects_of(const SearchContext& context,
   return effects;
 }
 
-/// Best combination of sizes with the model's own parameters at `base`.
-void screened(const plant_sim::ModelFile& model, const FitDataset& data,
-              const Projection& projection, const VectorXd& base, Couple& couple) {
+/// Residuals of every combination of sizes with the model's own parameters at `base`.
+struct SizeGrid {
+  MatrixXd points;       ///< one combination a column: first size i, second k in column 4 i + k
+  MatrixXd residuals_m;  ///< as many columns
+};
+
+SizeGrid simulated(const plant_sim::ModelFile& model, const FitDataset& data, const VectorXd& base,
+                   const Couple& couple) {
   DatasetSimulation run(model, data, couple.parameters);
-  const Index first = couple.first->sizes.rows();
-  const Index second = couple.second->sizes.rows();
-  MatrixXd points(base.size() + first + second, kPairSizes * kPairSizes);
+  SizeGrid grid;
+  grid.points.resize(base.size() + couple.first->sizes.rows() + couple.second->sizes.rows(),
+                     kPairSizes * kPairSizes);
   for (Index i = 0; i < kPairSizes; ++i) {
     for (Index k = 0; k < kPairSizes; ++k) {
-      points.col(i * kPairSizes + k) << base, couple.first->sizes.col(i),
+      grid.points.col(i * kPairSizes + k) << base, couple.first->sizes.col(i),
           couple.second->sizes.col(k);
     }
   }
+  grid.residuals_m.resize(data.size(), grid.points.cols());
+  MatrixXd some_m;
+  for (Index from = 0; from < grid.points.cols(); from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, grid.points.cols() - from);
+    run.residuals(grid.points.middleCols(from, lanes), some_m);
+    grid.residuals_m.middleCols(from, lanes) = some_m;
+  }
+  return grid;
+}
+
+/// Best combination of sizes at `base`: of the grid's, or between two neighbours in either size,
+/// where the error is taken as linear.
+void screened(const plant_sim::ModelFile& model, const FitDataset& data,
+              const Projection& projection, const VectorXd& base, Couple& couple) {
+  const SizeGrid grid = simulated(model, data, base, couple);
   double least = std::numeric_limits<double>::infinity();
-  Index best = 0;
-  MatrixXd residuals_m;
-  for (Index from = 0; from < points.cols(); from += ObserverSimulation::kLanes) {
-    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, points.cols() - from);
-    run.residuals(points.middleCols(from, lanes), residuals_m);
-    for (Index lane = 0; lane < lanes; ++lane) {
-      if (!residuals_m.col(lane).allFinite()) continue;
-      const double cost = projection.remaining(residuals_m.col(lane), base);
-      if (cost >= least) continue;
-      least = cost;
-      best = from + lane;
+  VectorXd best = grid.points.col(0);
+  const auto is_between = [](double share) {
+    return share > -kBeyondSizes && share < 1.0 + kBeyondSizes;
+  };
+  for (Index at = 0; at < grid.points.cols(); ++at) {
+    const Index i = at / kPairSizes;
+    const Index k = at % kPairSizes;
+    const Index in_first = at + (i == 0 ? kPairSizes : -kPairSizes);
+    const Index in_second = at + (k == 0 ? 1 : -1);
+    const auto here_m = grid.residuals_m.col(at);
+    if (!here_m.allFinite()) continue;
+    VectorXd theta = grid.points.col(at);
+    double cost = projection.remaining(here_m, base);
+    if (grid.residuals_m.col(in_first).allFinite() && grid.residuals_m.col(in_second).allFinite()) {
+      const Projection::Two two =
+          projection.with(here_m, base, grid.residuals_m.col(in_first) - here_m,
+                          grid.residuals_m.col(in_second) - here_m);
+      if (is_between(two.first) && is_between(two.second)) {
+        cost = two.cost;
+        theta += two.first * (grid.points.col(in_first) - grid.points.col(at)) +
+                 two.second * (grid.points.col(in_second) - grid.points.col(at));
+      }
     }
+    if (cost >= least) continue;
+    least = cost;
+    best = theta;
   }
   couple.cost = std::min(couple.cost, least);
-  couple.starts.emplace_back(points.col(best));
+  couple.starts.emplace_back(best);
 }
 
 /// Screens all pairs from all bases and keeps the `most` best, best first.

@@ -16,7 +16,7 @@ SearchStart two_effects(const SearchContext& context) {
 
 TEST(PairStart, FindsTwoThatPassForTwoOthersOneByOne) {
   const SearchContext context = diagnose_test::context_of(
-      "motion=chirp,length_s=30,external_leakage.conductance_m3ps_per_Pa=3.7e-13,"
+      "motion=multisine,length_s=30,external_leakage.conductance_m3ps_per_Pa=3.7e-13,"
       "load_force.force_N=-450",
       81);
   SearchStart start = two_effects(context);
