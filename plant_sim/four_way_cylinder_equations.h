@@ -94,11 +94,12 @@ typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::underlapp
   const S supply_Pa = inlet_Pa<true>(x, opening_m);
   const S return_Pa = parameters.return_pressure_Pa;
   const auto [ahead_m, back_m] = edges(opening_m);
-  const S in_G = in_side().orifice;
-  const S out_G = out_side().orifice;
-  return {
-      in_G * ahead_m * root(supply_Pa - x.in_Pa) - in_G * back_m * root(x.in_Pa - return_Pa),
-      out_G * ahead_m * root(x.out_Pa - return_Pa) - out_G * back_m * root(supply_Pa - x.out_Pa)};
+  const S in_orifice = in_side().orifice;
+  const S out_orifice = out_side().orifice;
+  return {in_orifice * ahead_m * root(supply_Pa - x.in_Pa) -
+              in_orifice * back_m * root(x.in_Pa - return_Pa),
+          out_orifice * ahead_m * root(x.out_Pa - return_Pa) -
+              out_orifice * back_m * root(supply_Pa - x.out_Pa)};
 }
 
 /// Part of an edge's flow that is left behind a throttle in series with it.

@@ -2,8 +2,9 @@
 // friction together resemble a dead band.
 //
 // Every pair is simulated in several sizes of both; the projection (projection.h) gives the error
-// that remains after the parameters adjust, and the sizes between those that were simulated. The most promising pairs are fitted. Periodic effects
-// are excluded: their wavelengths would need a scan per partner.
+// that remains after the parameters adjust, and the sizes between those that were simulated. The
+// most promising pairs are fitted. Periodic effects are excluded: their wavelengths would need a
+// scan per partner.
 #pragma once
 
 #include <vector>
