@@ -88,7 +88,8 @@ function(spoolwatch_program name)
 endfunction()
 
 # spoolwatch_test(name [LONG] [LABELS...] [TIMEOUT s]): a GoogleTest program; each of its tests becomes a
-# ctest; in a LONG one, suites whose name begins with Long have the label long. Its sources come from spoolwatch_tests().
+# ctest. Its sources come from spoolwatch_tests(). In a LONG one, suites whose name begins with Long have the label
+# long.
 function(spoolwatch_test name)
   cmake_parse_arguments(ARG "LONG" "TIMEOUT" "LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)

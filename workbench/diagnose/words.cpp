@@ -238,7 +238,9 @@ std::string verdict_words(const selection::Diagnosis& d) {
                beside_floor(d, d.rms_after_m) + " so far.";
       }
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
-             beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
+             beside_floor(d, d.rms_after_m) +
+             (d.search.refused.empty() ? ", and no effect of the library lowers it further."
+                                       : ", and no effect of the library makes it likelier.");
     case selection::Verdict::missing:
       return missing_words(d);
     case selection::Verdict::undetermined:

@@ -75,6 +75,8 @@ class Site final : public HttpHandler {
   /// On the pages from now on; a diagnosis of all effects stays beside what comes after it.
   void show_result(Json result);
   void finish_job(JobResult result, const std::string& parent, const std::string& output);
+  /// Shows the result of a job; its model waits where the folder cannot take it.
+  void keep_result(const JobResult& result, const std::string& parent, const std::string& output);
   /// Writes the model of a job, which becomes the trial.
   void take_result(const JobResult& result, const std::string& parent);
   /// Saves the results that had to wait for the folder.

@@ -59,27 +59,32 @@ Site::Json Site::begin_diagnosis(const Json& body) {
 
 void Site::finish_job(JobResult result, const std::string& parent, const std::string& output) {
   study_lane_.post_kept([this, result = std::move(result), parent, output] {
-    const Taken taken(jobs_);
-    if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
-    std::string error = result.error;
-    try {
-      take_result(result, parent);
-    } catch (const std::exception& failed) {
-      error = failed.what();
-      check_folder(true);
-      if (!trouble_.empty()) {
-        show_result(result.summary);
-        last_result_["unsaved"] = error;
-        unsaved_.push_back({result, parent});
-        jobs_.taken();
-        return publish_state();
-      }
+    {
+      const Taken taken(jobs_);
+      keep_result(result, parent, output);
     }
-    folder_.release(output);
-    show_result(error.empty() ? result.summary : Json{{"kind", "error"}, {"words", error}});
-    jobs_.taken();
     publish_state();
   });
+}
+
+void Site::keep_result(const JobResult& result, const std::string& parent,
+                       const std::string& output) {
+  if (!unsaved_.empty()) check_folder(false);  // results are taken in their order
+  std::string error = result.error;
+  try {
+    take_result(result, parent);
+  } catch (const std::exception& failed) {
+    error = failed.what();
+    check_folder(true);
+    if (!trouble_.empty()) {
+      show_result(result.summary);
+      last_result_["unsaved"] = error;
+      unsaved_.push_back({result, parent});
+      return;
+    }
+  }
+  folder_.release(output);
+  show_result(error.empty() ? result.summary : Json{{"kind", "error"}, {"words", error}});
 }
 
 void Site::show_result(Json result) {

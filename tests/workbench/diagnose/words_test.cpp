@@ -58,6 +58,17 @@ TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
                                          "error goes from 1.42 mm to 26.3 um."));
 }
 
+TEST(Words, AnEffectThatWasRefusedMayLowerTheError) {
+  ExampleReport outcome;
+  outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
+  outcome.diagnosis.missing.clear();
+  outcome.diagnosis.search.refused = {{{"friction"}, 2.5e-6, selection::Refusal::unlikely}};
+  EXPECT_THAT(verdict_words(outcome.diagnosis), testing::Not(HasSubstr("lowers it further")));
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("Not taken: friction")));
+  outcome.diagnosis.search.refused.clear();
+  EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("lowers it further"));
+}
+
 /// Friction beside one of two rivals.
 void set_rivals(selection::Diagnosis& d) {
   d.verdict = selection::Verdict::undetermined;
