@@ -230,7 +230,7 @@ Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
     return w;
   }
   const bool somewhere = c.headline.significant;
-  const std::string part = part_of_record(c);
+  const std::string part = c.independence_p < kSignificant ? part_of_record(c) : "";
   const std::string plain = plain_words(c);
   if (!plain.empty()) {
     w.judgement = Judgement::fails_throughout;

@@ -180,7 +180,7 @@ std::string motion_words(const monitor::control::ReferenceConfig& reference, dou
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
                              double separation) {
   return "Run " + motion + ": a wrong choice among " + config::schema::listed(names) +
-         " would then leave an error of up to " + number(separation) + " times the noise.";
+         " would then leave an error of about " + number(separation) + " times the noise.";
 }
 
 std::string words_for_sensor(const plant_sim::ModelFile& model,

@@ -215,7 +215,8 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
   constexpr double kFar_sds = 2.5;
   std::vector<std::string> at_bound;
   for (const selection::ParameterValue& p : d.parameters) {
-    if (p.at_bound && p.name.find('.') == std::string::npos) at_bound.push_back(p.name);
+    const bool own = p.name.find('.') == std::string::npos;
+    if (own && p.at_bound && p.value != 0.0) at_bound.push_back(p.name);
     if (std::abs(p.prior_sds) < kFar_sds) continue;
     out.push_back(fmt::format(
         "{} ends {:.1f} standard deviations of its prior {} the file's value: the file is wrong "
@@ -227,7 +228,7 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
   out.push_back(config::schema::listed(at_bound) +
                 (one ? " ends at its bound" : " end at their bounds") +
                 ": the errors of the others do not contain by how much " +
-                (one ? "it is off." : "they are off."));
+                (one ? "it may be off." : "they may be off."));
 }
 
 std::string verdict_words(const selection::Diagnosis& d) {
@@ -240,7 +241,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) +
              (d.search.refused.empty() ? ", and no effect of the library lowers it further."
-                                       : ", and no effect of the library makes it likelier.");
+                                       : ", and no effect that lowers it further was taken.");
     case selection::Verdict::missing:
       return missing_words(d);
     case selection::Verdict::undetermined:

@@ -86,8 +86,8 @@ SizeGrid simulated(const plant_sim::ModelFile& model, const FitDataset& data, co
   return grid;
 }
 
-/// Best combination of sizes at `base`: of the grid's, or between two neighbours in either size,
-/// where the error is taken as linear.
+/// Best combination of sizes at `base`: of the grid's, or between two of its sizes of either
+/// effect, which may differ in sign; there the error is taken as linear.
 void screened(const plant_sim::ModelFile& model, const FitDataset& data,
               const Projection& projection, const VectorXd& base, Couple& couple) {
   const SizeGrid grid = simulated(model, data, base, couple);

@@ -134,6 +134,8 @@ TEST(CompareWords, NameThePartOfTheRecordThatHoldsThePositionError) {
   const Words said = words(c, {.asked = true});
   EXPECT_EQ(said.judgement, Judgement::fails_somewhere);
   EXPECT_THAT(said.verdict, HasSubstr("96 % of the squared position error lies there"));
+  c.independence_p = 0.5;
+  EXPECT_THAT(words(c).verdict, HasSubstr("like a disturbance"));
 }
 
 TEST(DisturbanceCheck, IsNotAskedWhereItWouldTellNothing) {

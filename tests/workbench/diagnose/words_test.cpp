@@ -36,6 +36,8 @@ TEST(Words, ErrorsDoNotContainWhatAParameterAtItsBoundIsOff) {
   ASSERT_EQ(outcome.diagnosis.parameters.front().name.find('.'), std::string::npos);
   outcome.diagnosis.parameters.front().at_bound = true;
   EXPECT_THAT(remarks(outcome), Contains(bounds));
+  outcome.diagnosis.parameters.front().value = 0.0;
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(bounds))) << "zero may be its value";
 }
 
 TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
