@@ -15,6 +15,7 @@
 #include "plant_sim/effects/table.h"
 #include "plant_sim/guard.h"
 #include "plant_sim/parameter.h"
+#include "plant_sim/rigid_contact.h"
 #include "plant_sim/runge_kutta.h"
 #include "plant_sim/scalar.h"
 
@@ -92,7 +93,9 @@ class ForceDrivenAxis {
         (parameters.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
-    arrest_kg_per_s_ = driven_kg * S(1.0 / step_s);
+    holding_N_ = effects.holding_N();
+    gradual_N_ = effects.gradual_N();
+    rubs_ = !all(holding_N_ + gradual_N_ <= S(0.0));
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
     spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
                        S(kFiner) * effects.coupling_rate_per_s());
@@ -103,7 +106,8 @@ class ForceDrivenAxis {
     const S known_V = limits::known_V(u_V);
     const S drive_V =
         effects.drive_V(effects.command_V(known_V, [&] { return motion(state, known_V); }));
-    const S parts = divisions();
+    const S parts = divisions(drive_V);
+    arrest_kg_per_s_ = driven_kg_ * S(1.0 / step_s_) * parts;
     const S part_s = S(step_s_) / parts;
     const int most = static_cast<int>(reduce_max(parts));
     for (int i = 0; i < most; ++i) {
@@ -119,15 +123,27 @@ class ForceDrivenAxis {
     return {.u_V = u_V, .y_m = x.y_m, .v_mps = x.v_mps};
   }
 
-  /// Number of parts of a step, fine enough for damping and springs.
-  S divisions() const {
-    const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
+  /// Number of parts of a step, fine enough for damping, friction and springs.
+  S divisions(const S& drive_V) const {
+    const S& v_mps = state.v_mps;
+    S free_N = parameters.gain_N_per_V * drive_V - disturbance_N;
+    if (rubs_) {
+      free_N -= parameters.damping_N_s_per_m * v_mps +
+                effects.resisting_N(state.y_m, v_mps, [&] { return motion(state, drive_V); });
+    }
+    const S change_mps = S(2.0 * step_s_) * (abs(free_N) + gradual_N_) * inverse_mass_;
+    const S slope = parameters.damping_N_s_per_m +
+                    effects.slope_N_s_per_m(v_mps, max(abs(v_mps) - change_mps, S(0.0)));
     S fastest = max(slope * inverse_mass_, spring_rate_);
     if (effects.stiffness_varies()) {
-      const S stiffness = effects.stiffness_N_per_m(state.v_mps);
+      const S stiffness = effects.stiffness_N_per_m(v_mps);
       fastest = max(fastest, sqrt(stiffness * inverse_mass_));
     }
-    return clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
+    const S parts =
+        clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
+    if (!rubs_) return parts;
+    const auto turns = turns_within(v_mps, free_N, holding_N_, S(step_s_) * inverse_mass_);
+    return max(parts, select(turns, S(kTurnDivisions), S(1.0)));
   }
 
   void integrate(const S& drive_V, const S& step_s) {
@@ -153,7 +169,9 @@ class ForceDrivenAxis {
   }
 
   double step_s_ = 0.0;
-  S driven_kg_, inverse_mass_, arrest_kg_per_s_, spring_rate_;
+  bool rubs_ = false;
+  S driven_kg_, inverse_mass_, holding_N_, gradual_N_, spring_rate_;
+  S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
 };
 
 }  // namespace plant_sim

@@ -144,8 +144,9 @@ class FourWayCylinder {
     CylinderSide<S> in, out;
     EndCushions<S> cushions;
     bool cushioned;
+    bool holds, turns_gradually;
     S valve_gain_m_per_V, most_orifice;
-    S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, arrest_kg_per_s, steady_rate;
+    S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, holding_N, gradual_N, steady_rate;
     S weight_N;
     S spool_limit_mps, stiffness_N_per_m, conductance_m3ps_per_Pa;
     double step_s;
@@ -187,6 +188,8 @@ class FourWayCylinder {
   Flows flows(const State& x) const;
   S reach_m(const S& u_V) const;
   S fast_mps() const;
+  S free_N() const;
+  S slow_mps(const S& free_N) const;
   S spool_reach_mps(const S& u_V) const;
   auto ordinary(const S& u_V) const;
   S divisions(const S& u_V) const;
@@ -195,7 +198,8 @@ class FourWayCylinder {
   void keep_within_limits();
 
   Derived derived_;
-  S drive_V_ = 0.0;  ///< command behind the effects of the command, held through the step
+  S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
+  S drive_V_ = 0.0;    ///< command behind the effects of the command, held through the step
 };
 
 }  // namespace plant_sim

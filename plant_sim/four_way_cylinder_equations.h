@@ -180,7 +180,7 @@ typename FourWayCylinder<S, Design>::State FourWayCylinder<S, Design>::rate(
     in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
     out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);
     force_N += derived_.mass_kg * pull_mps2;
-    force_N = effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s},
+    force_N = effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, arrest_kg_per_s_},
                                   [&] { return motion(x); });
   }
   State r;

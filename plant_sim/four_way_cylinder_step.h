@@ -3,6 +3,7 @@
 
 #include "plant_sim/four_way_cylinder.h"
 #include "plant_sim/guard.h"
+#include "plant_sim/rigid_contact.h"
 
 /// Before a function that is compiled as one with all that it calls: the wide ensembles' step.
 #ifdef PLANT_SIM_WHOLE_STEPS
@@ -90,7 +91,11 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   const S mass_kg = p.mass_kg + effects.added_mass_kg();
   derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
-  derived_.arrest_kg_per_s = derived_.mass_kg * S(1.0 / step_s);
+  derived_.holding_N = effects.holding_N();
+  derived_.gradual_N = effects.gradual_N();
+  derived_.turns_gradually = !all(derived_.gradual_N <= S(0.0));
+  derived_.holds = !all(derived_.holding_N <= S(0.0));
+  arrest_kg_per_s_ = derived_.mass_kg * S(1.0 / step_s);
   if constexpr (!Design::kEqualSides) derived_.weight_N = Design::weight_N(p, mass_kg);
   derived_.steady_rate = max(max(spool.wv_rad_per_s, derived_.two_zeta_wv), derived_.lag_rate);
   derived_.spool_limit_mps = effects.spool_limit_mps();
@@ -121,10 +126,26 @@ S FourWayCylinder<S, Design>::fast_mps() const {
   const S v_mps = state.v_mps;
   S push_N = S(0.0) - disturbance_N;
   if (effects.any()) {
-    push_N = effects.net_force_N(state.y_m, {v_mps, S(0.0), push_N, derived_.arrest_kg_per_s},
-                                 [&] { return motion(state); });
+    push_N = effects.net_force_N(
+        state.y_m, {v_mps, S(0.0), push_N, derived_.mass_kg * S(1.0 / derived_.step_s)},
+        [&] { return motion(state); });
   }
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
+}
+
+/// What drives the rod but for dry friction.
+template <class S, class Design>
+S FourWayCylinder<S, Design>::free_N() const {
+  const S& v_mps = state.v_mps;
+  return pressure_force_N(state) - parameters.damping_N_s_per_m * v_mps - disturbance_N -
+         effects.resisting_N(state.y_m, v_mps, [&] { return motion(state); });
+}
+
+/// The slowest that the rod can become within the step.
+template <class S, class Design>
+S FourWayCylinder<S, Design>::slow_mps(const S& free_N) const {
+  const S change_mps = S(2.0 * derived_.step_s) * (abs(free_N) + derived_.gradual_N);
+  return max(abs(state.v_mps) - change_mps * derived_.inverse_mass, S(0.0));
 }
 
 /// Mask of the lanes in which the whole step reaches no limit.
@@ -154,7 +175,8 @@ auto FourWayCylinder<S, Design>::ordinary(const S& u_V) const {
                     : p.bulk_modulus_Pa * (in_m2 * in_m2 * out_m3 + out_m2 * out_m2 * in_m3);
   const S stiffness = (oil + derived_.stiffness_N_per_m * in_m3 * out_m3) * step_s * step_s;
   const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
-  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps);
+  const S least_mps = derived_.turns_gradually ? slow_mps(free_N()) : S(0.0);
+  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps, least_mps);
   constexpr double kSquare = limits::kRateStep * limits::kRateStep;
   const auto place = (room_m > travel_m) & (derived_.steady_rate * step_s <= S(limits::kRateStep));
   const auto pressure =
@@ -193,7 +215,15 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   drive_V_ = effects.command_V(drive_V_, [&] { return motion(state); });
   const S drive_V = drive_V_;
   const auto whole = ordinary(drive_V);
-  if (all(whole)) {
+  S turned = 1.0;
+  if (derived_.holds) {
+    const S step_per_kg = S(derived_.step_s) * derived_.inverse_mass;
+    const auto turns = turns_within(state.v_mps, free_N(), derived_.holding_N, step_per_kg);
+    turned = select(turns, S(kTurnDivisions), turned);
+  }
+  const S once_kg_per_s = derived_.mass_kg * S(1.0 / derived_.step_s);
+  arrest_kg_per_s_ = once_kg_per_s;
+  if (all(whole) && all(turned <= S(1.0))) {
     if (effects.any()) {
       integrate<false, true>(drive_V, S(derived_.step_s));
     } else {
@@ -202,8 +232,9 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
     effects.end_step([&] { return motion(state); }, derived_.step_s);
     return;
   }
-  const S parts = select(whole, S(1.0), divisions(drive_V));
+  const S parts = max(turned, select(whole, S(1.0), divisions(drive_V)));
   const S part_s = S(derived_.step_s) / parts;
+  arrest_kg_per_s_ = once_kg_per_s * parts;
   const int most = static_cast<int>(reduce_max(parts));
   for (int i = 0; i < most; ++i) {
     integrate<true, true>(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
@@ -260,8 +291,10 @@ S FourWayCylinder<S, Design>::divisions(const S& u_V) const {
                           : p.bulk_modulus_Pa * (in_m2 * in_m2 / in_m3 + out_m2 * out_m2 / out_m3);
   const S column_rate = sqrt((oil_N_per_m + derived_.stiffness_N_per_m) * derived_.inverse_mass);
   const S leak_rate = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa / min(in_m3, out_m3);
+  const S speed_mps = fast_mps();
+  const S least_mps = derived_.turns_gradually ? slow_mps(free_N()) : S(0.0);
   const S damping_rate =
-      (p.damping_N_s_per_m + effects.slope_N_s_per_m(fast_mps())) * derived_.inverse_mass;
+      (p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps, least_mps)) * derived_.inverse_mass;
   const S fastest =
       max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
   // the equations have a corner where the spool reaches its limit

@@ -20,6 +20,8 @@ struct ParameterInfo {
   /// Effects: 0 = main parameters; above 0, the number of a refinement, whose parameters are added
   /// and removed together.
   int refinement = 0;
+  /// Effects: number of the refinement whose place this one takes; 0 stands beside all.
+  int instead_of = 0;
 };
 
 /// A named value of a model file.

@@ -202,15 +202,32 @@ class EffectSet : public EffectStore<S, E...> {
     return contact.drive_N;
   }
 
-  [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
+  /// What dry frictions without a spring hold at rest.
+  [[nodiscard]] S holding_N() const {
+    S sum_N = 0.0;
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::holding_N(p); });
+    return sum_N;
+  }
+
+  /// The most that dry frictions rub whose force turns its sign gradually.
+  [[nodiscard]] S gradual_N() const {
+    S sum_N = 0.0;
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::gradual_N(p); });
+    return sum_N;
+  }
+
+  /// At speeds from `least_mps` to `v_mps`.
+  [[nodiscard]] S slope_N_s_per_m(const S& v_mps, const S& least_mps) const {
     S sum = 0.0;
     this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
-          if constexpr (requires { T::slope_N_s_per_m(p, v_mps); })
-            sum += T::slope_N_s_per_m(p, v_mps);
+          if constexpr (requires { T::slope_N_s_per_m(p, least_mps); })
+            sum += T::slope_N_s_per_m(p, least_mps);
         });
     if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;

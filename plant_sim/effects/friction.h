@@ -2,15 +2,18 @@
 //
 //   sliding level   g(v) = Fc' + max(Fs - Fc', 0) exp(-(v/vs)^2),   Fc' = Fc (1 + r sign v)
 //   rigid (k = 0)   F = g(v) sign v while it slides; at rest F holds the other forces up to g(0)
+//   gradual         F = g(v) tanh(v/vt)   (without k, where vt > 0)
 //   pre-sliding     F = k z + s1 z',  dz = dx - |dx| k z / g(v)   (a spring that yields at g)
 //
 // Fc  coulomb_N    Fs  static_N (below Fc: no rise)    vs  stribeck_mps    r  direction_ratio
-// k   presliding_stiffness_N_per_m    x  rod position    z  bristle deflection, m
+// vt  transition_mps    k  presliding_stiffness_N_per_m    x  rod position
+// z   bristle deflection, m
 // s1  presliding_damping_N_s_per_m    with k only; 0 is Dahl's law, above it the LuGre law
 // Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
 // would stop the rod within one integration step, F is just the force that does so, never one that
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
-// sliding asks for no shorter step. Both dissipate: F v >= 0,
+// sliding asks for no shorter step. A transition steeper than a step resolves is the rigid contact.
+// All dissipate: F v >= 0,
 // or k z^2 / 2 is what is stored; for that s1 z' against v, where Stribeck's level falls below k z,
 // is at least -k z: the bristle's damping never drives. Sources: Karnopp (1985); Dahl (1968);
 // Canudas de Wit, Olsson, Astrom, Lischinsky, A new model for control of systems with friction
@@ -31,7 +34,8 @@ template <class S>
 struct Friction {
   static constexpr const char* kName = "friction";
   static constexpr const char* kEquation =
-      "Coulomb (1 + ratio sign v), Stribeck Fc + (Fs - Fc) exp(-(v/vs)^2), pre-sliding spring";
+      "Coulomb (1 + ratio sign v), Stribeck Fc + (Fs - Fc) exp(-(v/vs)^2), pre-sliding spring or "
+      "tanh(v/vt)";
   static constexpr std::array kSites = {Site::dry_friction};
   static constexpr bool kDissipative = true;
 
@@ -42,6 +46,7 @@ struct Friction {
     S presliding_stiffness_N_per_m = 0.0;
     S presliding_damping_N_s_per_m = 0.0;
     S direction_ratio = 0.0;
+    S transition_mps = 0.0;
 
     template <class V>
     void visit(V&& v) {
@@ -61,6 +66,10 @@ struct Friction {
       v(ParameterInfo{"direction_ratio", "more when extending, less when retracting", -1.0, 1.0,
                       0.2, 0.0, 0.0, 3},
         direction_ratio);
+      v(ParameterInfo{"transition_mps",
+                      "speed over which it turns its sign; no effect with a pre-sliding stiffness",
+                      0.0, 10.0, 0.001, 0.0, 0.0, 4, 2},
+        transition_mps);
     }
   };
   struct Memory {
@@ -81,7 +90,8 @@ struct Friction {
     const S backward_N = level_at_N(p, S(-1.0), rise);
     const S least_N = select(at.v_mps > S(0.0), S(0.0), -backward_N);
     const S most_N = select(at.v_mps < S(0.0), S(0.0), forward_N);
-    const S rigid_N = clamp(at.drive_N + at.arrest_kg_per_s * at.v_mps, least_N, most_N);
+    const S held_N = clamp(at.drive_N + at.arrest_kg_per_s * at.v_mps, least_N, most_N);
+    const S rigid_N = gradual_force_N(p, at, forward_N, backward_N, held_N);
     const auto bristled = p.presliding_stiffness_N_per_m > S(0.0);
     if (all(p.presliding_stiffness_N_per_m <= S(0.0))) return rigid_N;
     const S spring_N = p.presliding_stiffness_N_per_m * deflected_m(p, memory, at.travel_m, rise);
@@ -96,8 +106,27 @@ struct Friction {
 
   static S stiffness_N_per_m(const Parameters& p) { return p.presliding_stiffness_N_per_m; }
 
-  static S slope_N_s_per_m(const Parameters& p, const S& /*v_mps*/) {
-    return select(p.presliding_stiffness_N_per_m > S(0.0), p.presliding_damping_N_s_per_m, S(0.0));
+  static S slope_N_s_per_m(const Parameters& p, const S& least_mps) {
+    const auto bristled = p.presliding_stiffness_N_per_m > S(0.0);
+    const S bristle = select(bristled, p.presliding_damping_N_s_per_m, S(0.0));
+    if (all(p.transition_mps <= S(0.0))) return bristle;
+    const auto gradual = p.transition_mps > S(0.0);
+    const S transition_mps = select(gradual, p.transition_mps, S(1.0));
+    const auto turns = abs(least_mps) < S(kTransitions) * transition_mps;
+    return select(bristled, bristle,
+                  select(gradual & turns, S(kFiner) * most_N(p) / transition_mps, S(0.0)));
+  }
+
+  /// What a rigid contact holds at rest, whichever way it is pushed; 0 where it is not rigid.
+  static S holding_N(const Parameters& p) {
+    const auto rigid = (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps <= S(0.0));
+    const S level_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
+    return select(rigid, level_N, S(0.0));
+  }
+
+  /// The most that a contact with a transition rubs; 0 where it has none.
+  static S gradual_N(const Parameters& p) {
+    return select(p.transition_mps > S(0.0), most_N(p), S(0.0));
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
@@ -115,6 +144,24 @@ struct Friction {
   }
 
  private:
+  static S most_N(const Parameters& p) {
+    return max(p.coulomb_N * (S(1.0) + abs(p.direction_ratio)), p.static_N);
+  }
+
+  /// The force where the transition is gradual and the step resolves it, `rigid_N` elsewhere.
+  static S gradual_force_N(const Parameters& p, const DryContact<S>& at, const S& forward_N,
+                           const S& backward_N, const S& rigid_N) {
+    if (all(p.transition_mps <= S(0.0))) return rigid_N;
+    const S level_N = select(at.v_mps < S(0.0), backward_N, forward_N);
+    const auto resolved = (p.transition_mps > S(0.0)) &
+                          (S(kResolvedRate) * p.transition_mps * at.arrest_kg_per_s >= level_N);
+    return select(resolved, level_N * tanh(at.v_mps / select(resolved, p.transition_mps, S(1.0))),
+                  rigid_N);
+  }
+
+  static constexpr double kResolvedRate = 2.0;        ///< times a part of a step: RK4 follows that
+  static constexpr double kFiner = 4.0;               ///< the curve bends within a transition
+  static constexpr double kTransitions = 4.0;         ///< tanh beyond has a slope under 0.2 %
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
   static constexpr double kNoRise = 700.0;            ///< e^-700 is still a normal number
   static constexpr double kLeastLevel_N = 1e-9;

@@ -15,6 +15,8 @@
 //   inertia       S added_mass_kg(p)                         mass that moves with the rod
 //   force         S resisting_N(p, y_m, v_mps)               a force against extension
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
+//                 S holding_N(p), gradual_N(p)               at rest by a contact without a spring,
+//                                                            at most by one that turns gradually
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
 //                 S coupling_rate_per_s(p)                   its resonance, rad/s,
@@ -22,7 +24,8 @@
 //                 CouplingOffset<S> Memory::offset           integrates it (coupled_step.h)
 //
 // Effects of one site act in the order of the table. An effect too fast for the integration step
-// declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv,
+// declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv, at the
+// highest speed within the step, of a dry friction at the lowest,
 // `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have
@@ -78,9 +81,11 @@ constexpr bool fits() {
 template <class S>
 struct DryContact {
   S v_mps;
-  S travel_m;         ///< since the last accepted step
-  S drive_N;          ///< sum of all other forces on the moving part, positive extends
-  S arrest_kg_per_s;  ///< mass over step: the force per speed that stops it within one step
+  S travel_m;  ///< since the last accepted step
+  S drive_N;   ///< sum of all other forces on the moving part, positive extends
+  /// Mass over the part of a step that is integrated at once: the force per speed that stops it
+  /// within one.
+  S arrest_kg_per_s;
 };
 
 /// A mass on a spring, ahead of the moving part that carries it.

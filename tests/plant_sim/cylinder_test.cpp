@@ -183,8 +183,9 @@ TEST(HydraulicCylinder, IsTheDoubleRodWhereBothAreasAreEqual) {
     most_m = std::max(most_m, std::abs(actuator.state.y_m - cylinder.state.y_m));
     most_Pa = std::max(most_Pa, std::abs(actuator.state.in_Pa - cylinder.state.in_Pa));
   }
-  EXPECT_LT(most_m, 1e-9);
-  EXPECT_LT(most_Pa, 20.0);  // rounding, where the step jumps at a reversal
+  // rounding decides at a reversal whether a step is divided: 2 m/s2 over (step / 16)^2
+  EXPECT_LT(most_m, 1e-8);
+  EXPECT_LT(most_Pa, 20.0);
 }
 
 /// The spool's amplitude per command at a frequency, as the cylinder's step integrates it.

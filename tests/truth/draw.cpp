@@ -28,6 +28,9 @@ void draw_on_actuator(const std::string& name, double push, Case& of, Random& ra
       h.stribeck_mps = random.uniform(0.008, 0.02);
     }
     if (name == "friction_presliding") h.presliding_N_per_m = random.around(1e6, 1.5);
+    if (name == "friction_coulomb" && random.sign() > 0.0) {
+      h.transition_mps = random.around(5e-4, 2.0);
+    }
   }
   if (name == "load_spring") {
     h.spring_N_per_m = std::min(2e4, size(5000.0));
@@ -88,6 +91,9 @@ void draw_on_axis(const std::string& name, double push, Case& of, Random& random
     }
     if (name == "friction_presliding") {
       h.presliding_N_per_m = random.around(3e5, 2.0) * unit.force / unit.length;
+    }
+    if (name == "friction_coulomb" && random.sign() > 0.0) {
+      h.transition_mps = unit.length * random.around(5e-4, 2.0);
     }
     // A contact that rings with a tenth of the critical damping.
     h.bristle_N_s_per_m = 0.2 * std::sqrt(h.presliding_N_per_m * of.axis.mass_kg);

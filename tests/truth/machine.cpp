@@ -22,6 +22,7 @@ double sliding_level_N(const Hidden& hidden, double v_mps) {
 }
 
 double Machine::bristle_rate_mps(double z_m, double v_mps) const {
+  if (hidden.transition_mps > 0.0) return 0.0;
   const double level_N = sliding_level_N(hidden, v_mps);
   return v_mps - hidden.presliding_N_per_m * std::abs(v_mps) * z_m / level_N;
 }
@@ -35,6 +36,9 @@ double Machine::resisting_N(double y_m, double v_mps, double t_s) const {
   double force_N = hidden.force_N + hidden.spring_N_per_m * (y_m - hidden.rest_m);
   force_N += (hidden.quadratic_N_s2_per_m2 + hidden.needle_N_s2_per_m2) * v_mps * std::abs(v_mps);
   force_N += hidden.slaves_N_s_per_m * v_mps;
+  if (hidden.coulomb_N > 0.0 && hidden.transition_mps > 0.0) {
+    force_N += sliding_level_N(hidden, v_mps) * std::tanh(v_mps / hidden.transition_mps);
+  }
   if (hidden.ripple_N != 0.0) {
     force_N += hidden.ripple_N *
                std::sin(kTwoPi * y_m / hidden.ripple_wavelength_m + hidden.ripple_phase_rad);

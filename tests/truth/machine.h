@@ -1,6 +1,6 @@
 // The moving parts: equations that all plants of this folder share, integrated by Heun's method.
 //
-//   friction (LuGre): z' = v - s0 |v| z / g(v),  F = s0 z + s1 z',
+//   friction (LuGre, or smooth: F = g(v) tanh(v/vt)): z' = v - s0 |v| z / g(v),  F = s0 z + s1 z',
 //                     g = Fc (1 +- r) + (Fs - Fc)+ exp(-(v/vs)^2)
 //   load:             F = f + k (y - rest) + (c + c') v |v| + d' v + a sin(2 pi y/wavelength +
 //   phase)

@@ -26,6 +26,7 @@ const std::vector<Parameter>& parameters() {
       {"friction", "presliding_stiffness_N_per_m", &H::presliding_N_per_m, 0.0},
       {"friction", "bristle_N_s_per_m", &H::bristle_N_s_per_m, 0.0},
       {"friction", "direction_ratio", &H::direction_ratio, 0.0},
+      {"friction", "transition_mps", &H::transition_mps, 0.0},
       {"quadratic_damping", "coefficient_N_s2_per_m2", &H::quadratic_N_s2_per_m2, 0.10},
       {"load_spring", "stiffness_N_per_m", &H::spring_N_per_m, 0.02},
       {"load_spring", "rest_m", &H::rest_m, 0.02},

@@ -53,19 +53,21 @@ TYPED_TEST(EveryEffect, HasNoParameterWithoutInfluence) {
   const std::vector<double> without = driven(none);
   for (const EffectInfo& effect : effect_library()) {
     if (!fits<TypeParam>(effect)) continue;
-    // pre-sliding hides nothing of the others: all are at their typical size
-    TypeParam typical;
-    for (const ParameterInfo& p : effect.parameters) {
-      ASSERT_TRUE(set_effect(typical, effect.name, p.name, p.typical));
-    }
-    const std::vector<double> base = driven(typical);
-    EXPECT_NE(base, without) << effect.name;
     for (const ParameterInfo& changed : effect.parameters) {
-      TypeParam other;
-      for (const ParameterInfo& p : effect.parameters)
-        set_effect(other, effect.name, p.name, p.typical);
-      set_effect(other, effect.name, changed.name, 0.5 * changed.typical);
-      EXPECT_GT(std::abs(driven(other)[0] - base[0]), 1e-12) << effect.name << "." << changed.name;
+      // all others at their typical size, but for a refinement that this one takes the place of
+      const auto with_share = [&](double share) {
+        TypeParam plant;
+        for (const ParameterInfo& p : effect.parameters) {
+          const bool replaced = changed.instead_of > 0 && p.refinement == changed.instead_of;
+          EXPECT_TRUE(set_effect(plant, effect.name, p.name, replaced ? p.neutral : p.typical));
+        }
+        set_effect(plant, effect.name, changed.name, share * changed.typical);
+        return driven(plant);
+      };
+      const std::vector<double> base = with_share(1.0);
+      EXPECT_NE(base, without) << effect.name;
+      EXPECT_GT(std::abs(with_share(0.5)[0] - base[0]), 1e-12)
+          << effect.name << "." << changed.name;
     }
   }
 }

@@ -51,6 +51,41 @@ TEST(Friction, StopsAFreeRodInTheTimeAndWayOfTheClosedForm) {
   EXPECT_NEAR(plant->state.y_m, 0.305 + 0.01, 2e-6);
 }
 
+TEST(Friction, BrakesAFreeMassAlongTheClosedFormOfItsTransition) {
+  // m v' = -F tanh(v / vt): sinh(v / vt) = sinh(v0 / vt) e^(-F t / (m vt))
+  for (const double transition_mps : {2e-2, 1e-3, 2e-4}) {
+    auto axis = at_rest<Axis>();
+    axis->parameters.damping_N_s_per_m = 0.0;
+    axis->parameters.mass_kg = 50.0;
+    set_effect(*axis, "friction", "coulomb_N", 100.0);
+    set_effect(*axis, "friction", "transition_mps", transition_mps);
+    axis->prepare(1e-3);
+    axis->reset();
+    const double from_mps = 20.0 * transition_mps;
+    axis->state.v_mps = from_mps;
+    const double per_s = 100.0 / (50.0 * transition_mps);
+    const double time_s = 1e-3 * std::ceil(22.0 / per_s / 1e-3);
+    hold(*axis, 0.0, time_s);
+    const double ratio = std::sinh(20.0) * std::exp(-per_s * time_s);
+    EXPECT_NEAR(axis->state.v_mps / transition_mps, std::asinh(ratio), 0.02) << transition_mps;
+  }
+}
+
+TEST(Friction, GradualContactNeverDrivesAndIsTheSlidingLevelBeyondItsTransition) {
+  F::Parameters p;
+  p.coulomb_N = 100.0;
+  p.direction_ratio = 0.2;
+  p.transition_mps = 1e-3;
+  for (const double v_mps : {-0.1, -1e-3, -1e-5, 0.0, 1e-5, 1e-3, 0.1}) {
+    const effects::DryContact<double> at{v_mps, 0.0, 0.0, 5e5};
+    const double level_N = v_mps < 0.0 ? 80.0 : 120.0;
+    EXPECT_NEAR(F::friction_N(p, {}, at), level_N * std::tanh(v_mps / 1e-3), 1e-9) << v_mps;
+  }
+  // a step that does not resolve it: the rigid contact holds what drives
+  const effects::DryContact<double> coarse{0.0, 0.0, 50.0, 5e4};
+  EXPECT_DOUBLE_EQ(F::friction_N(p, {}, coarse), 50.0);
+}
+
 TEST(Friction, FallsFromStaticToCoulombAlongStribecksCurve) {
   F::Parameters p;
   p.coulomb_N = 100.0;
