@@ -74,6 +74,7 @@ std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect
     p.unit = info.typical;
     p.prior_sd = kInfinite;
     p.refinement = info.refinement;
+    p.instead_of = info.instead_of;
     if (std::isinf(info.neutral)) {
       p.scale = ParameterScale::reciprocal;
       p.lower = 0.0;

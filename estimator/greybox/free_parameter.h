@@ -33,6 +33,7 @@ struct FreeParameter {
   double prior_mean = 0.0;  ///< mean of theta
   double prior_sd = 0.0;    ///< infinite: no prior
   int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
+  int instead_of = 0;       ///< plant_sim::ParameterInfo::instead_of
   double origin = 0.0;      ///< value at theta = 0 of a linear scale
 
   [[nodiscard]] double to_physical(double theta) const;

@@ -118,7 +118,8 @@ void add_refinements(const SearchContext& context, CrossValidation& halves, Mode
     for (const FreeParameter& p : all) {
       const bool there = std::any_of(stage.fitted.parameters.begin(), stage.fitted.parameters.end(),
                                      [&](const auto& q) { return q.name == p.name; });
-      if (!there && p.refinement > kFirstRefinements) missing.insert(p.refinement);
+      if (!there && p.refinement > kFirstRefinements && p.instead_of == 0)
+        missing.insert(p.refinement);
     }
     for (const int refinement : missing) {
       const ParameterSubset plain = subset(stage.fitted, [](const auto&) { return true; });

@@ -24,7 +24,7 @@ constexpr double kEnds = 0.01;
 /// Samples about a change within which a load that sets in is the change's: a model that brings the
 /// gain before the lag instead of behind it is late by the lag.
 constexpr double kEdge_samples = 10.0;
-constexpr double kStandardErrors = 2.0;
+constexpr double kClearErrors = 2.0;
 /// Twice the gain over a ramp from which on an exponential that has not settled is no ramp.
 constexpr double kNoRamp_nats = 20.0 * kEvidence_nats;
 /// Time constants after which an exponential has settled.
@@ -196,7 +196,7 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
 bool is_clear_of_errors(const ParameterChange& change) {
   const double from_error = std::isfinite(change.from_error) ? change.from_error : 0.0;
   const double error = std::hypot(from_error, change.to_error);
-  return std::abs(change.to - change.from) > kStandardErrors * error;
+  return std::abs(change.to - change.from) > kClearErrors * error;
 }
 
 /// Held-out error of a simulation with the changes.

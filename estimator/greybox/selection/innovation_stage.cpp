@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/revived_refinements.h"
 
 namespace estimator::greybox::selection {
@@ -22,6 +23,8 @@ constexpr double kTolerance = 1e-5;
 constexpr double kFarBehind = 100.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
+/// ... and each parameter of one that takes another's place.
+constexpr double kPerRefinement = 6.0;
 /// Fall of -2 log L by a step of a trial's noise model below which it is the last.
 constexpr double kLastTrialNoiseStep = 1.0;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
@@ -58,23 +61,33 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
       plain.problem.model, plain.problem.data, stage.model.fitted.parameters,
       stage.model.fitted.theta, stage.linear, stage.noise);
   stage.context = with_data(plain, data.data);
-  ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
+  const ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   FitSummary fitted = fit_innovations(stage.context, all, width, effort);
   const double floor_m = plain.problem.data.noise_floor_m;
   const auto cost = [&](const FitSummary& fit) { return squares(fit, floor_m) + prior_cost(fit); };
-  const auto try_start = [&](Eigen::VectorXd start, double enough) {
-    all.start = std::move(start);
-    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::quick);
+  const auto try_other = [&](ParameterSubset start, double enough) {
+    FitSummary other = fit_innovations(stage.context, start, width, InnovationFit::quick);
     if (cost(other) > cost(fitted) + kFarBehind) return;
-    all.start = other.theta;
-    other = fit_innovations(stage.context, all, width, effort);
+    start.start = other.theta;
+    other = fit_innovations(stage.context, start, width, effort);
     if (cost(other) + enough < cost(fitted)) fitted = std::move(other);
+  };
+  const auto try_start = [&](Eigen::VectorXd start, double enough) {
+    try_other({all.parameters, std::move(start)}, enough);
   };
   if (from_file_too) {
     try_start(with_file_values(stage.context, stage.model), 0.0);
     for (const Eigen::VectorXd& start : resized_plays(fitted)) try_start(start, 0.0);
   }
   for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
+  if (from_file_too && effort == InnovationFit::converged) {
+    const ModelStage found{stage.model.added, fitted};
+    for (const ParameterSubset& other : alternative_refinements(plain, found)) {
+      const double more = static_cast<double>(other.parameters.size()) -
+                          static_cast<double>(fitted.parameters.size());
+      try_other(other, kPerRefinement * more + kRevived);
+    }
+  }
   stage.model.fitted = std::move(fitted);
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
                             stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,

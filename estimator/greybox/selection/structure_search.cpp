@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/backward_elimination.h"
 #include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/confidence.h"
@@ -64,6 +65,7 @@ bool take(const SearchContext& context, const Round& round, ModelStage& stage) {
   stage = with(stage, simplest(context, round.candidates));
   if (stage.fitted.jacobian.size() == 0) stage.fitted = refit_to_convergence(context, stage.fitted);
   revive(context, stage.fitted);
+  take_alternative_refinements(context, stage);
   return true;
 }
 
@@ -105,6 +107,7 @@ SearchBranch branch_from(const SearchContext& context, CrossValidation& halves,
                          const ModelStage& first, const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
   refit_without_refinements(context, other.stage);
+  take_alternative_refinements(context, other.stage);
   extend_branch(context, other, false);
   eliminate_backward(context, halves, other.stage, EliminationPass::intermediate);
   if (candidate.effects.size() > 1) {

@@ -21,10 +21,14 @@ using testing::UnorderedElementsAre;
 
 constexpr double kGain_N_per_V = 35.0;
 
-/// M v' = g(t) u - d v - F under a proportional controller, in steps of 0.05 ms; 2 um of noise and
-/// an encoder of 1 um.
-template <class Gain>
-config::record::Record axis_record(const Gain& gain_N_per_V, double load_N) {
+constexpr auto kSteady = [](double) { return kGain_N_per_V; };
+constexpr auto kNoRub = [](double) { return 0.0; };
+
+/// M v' = g(t) u - d v - F - rub(v) under a proportional controller, in steps of 0.05 ms; 2 um of
+/// noise and an encoder of 1 um.
+template <class Gain, class Rub = decltype(kNoRub)>
+config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
+                                   const Rub& rub_N = kNoRub) {
   constexpr double kTs_s = 0.005;
   constexpr int kSteps = 100;
   std::mt19937 random(7);
@@ -45,7 +49,8 @@ config::record::Record axis_record(const Gain& gain_N_per_V, double load_N) {
     record.y_m.push_back(read_m);
     for (int i = 0; i < kSteps; ++i) {
       constexpr double kStep_s = kTs_s / kSteps;
-      const double force_N = gain_N_per_V(t_s + kStep_s * i) * u_V - 210.0 * v_mps - load_N;
+      const double force_N =
+          gain_N_per_V(t_s + kStep_s * i) * u_V - 210.0 * v_mps - load_N - rub_N(v_mps);
       const double before_mps = v_mps;
       v_mps += kStep_s * force_N / 98.0;
       y_m += 0.5 * kStep_s * (before_mps + v_mps);
@@ -84,13 +89,13 @@ TEST(LongAxisGain, FadesBesideALoad) {
 }
 
 TEST(AxisGain, ThatIsSteadyDoesNotChange) {
-  const SearchContext context = axis_context([](double) { return kGain_N_per_V; }, 0.0);
+  const SearchContext context = axis_context(kSteady, 0.0);
   EXPECT_EQ(diagnose(context.problem, context.options).verdict, Verdict::nothing_missing);
 }
 
 // Nothing but mass and damping, 0.47 s here, brings the speed back that a simulation starts with.
 TEST(Axis, IsHealthyInARecordThatBeginsInMotionAndHasAGap) {
-  config::record::Record record = axis_record([](double) { return kGain_N_per_V; }, 0.0);
+  config::record::Record record = axis_record(kSteady, 0.0);
   const auto cut = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
     for (std::vector<double>* values : {&record.t_s, &record.u_V, &record.y_m}) {
       values->erase(values->begin() + from, values->begin() + to);
@@ -103,6 +108,21 @@ TEST(Axis, IsHealthyInARecordThatBeginsInMotionAndHasAGap) {
   const Diagnosis d = diagnose(context.problem, context.options);
   EXPECT_EQ(d.verdict, Verdict::nothing_missing);
   EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+}
+
+// A contact that turns its sign over a few mm/s; neither a spring before it slides nor a jump does.
+TEST(AxisFriction, TurnsGradually) {
+  for (const double transition_mps : {3e-4, 2e-3}) {
+    const SearchContext context = context_of(axis_record(
+        kSteady, 0.0, [&](double v_mps) { return 20.0 * std::tanh(v_mps / transition_mps); }));
+    const Diagnosis d = diagnose(context.problem, context.options);
+    EXPECT_EQ(d.verdict, Verdict::missing);
+    EXPECT_THAT(d.missing, ElementsAre("friction"));
+    EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+    plant_sim::ModelFile better = d.better;
+    EXPECT_NEAR(*better.value("friction.coulomb_N"), 20.0, 0.02);
+    EXPECT_NEAR(*better.value("friction.transition_mps"), transition_mps, 0.1 * transition_mps);
+  }
 }
 
 // An offset and a load are one on an axis, also where an error remains.

@@ -1,0 +1,69 @@
+#include "estimator/greybox/selection/alternative_refinements.h"
+
+#include <algorithm>
+
+#include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/structure_search.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Starts, in typical sizes.
+constexpr double kStarts[] = {1.0, 0.2, 5.0};
+
+bool is_in(const FitSummary& fitted, const FreeParameter& parameter) {
+  return std::any_of(fitted.parameters.begin(), fitted.parameters.end(),
+                     [&](const FreeParameter& other) { return other.name == parameter.name; });
+}
+
+}  // namespace
+
+std::vector<ParameterSubset> alternative_refinements(const SearchContext& context,
+                                                     const ModelStage& stage) {
+  std::vector<ParameterSubset> found;
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    const auto& added = stage.added;
+    if (std::find(added.begin(), added.end(), effect.name) == added.end()) continue;
+    for (const FreeParameter& other : effect_parameters(effect, kEveryRefinement)) {
+      if (other.instead_of == 0 || is_in(stage.fitted, other)) continue;
+      const ParameterSubset plain = subset(stage.fitted, [&](const FreeParameter& p) {
+        return !belongs_to(p, effect.name) || p.refinement == 0;
+      });
+      const ParameterSubset rest = subset(stage.fitted, [&](const FreeParameter& p) {
+        return !belongs_to(p, effect.name) || p.refinement != other.instead_of;
+      });
+      const auto add_in_sizes = [&](const ParameterSubset& to) {
+        for (const double size : kStarts) {
+          const double start = std::clamp(size, other.lower, other.upper);
+          found.push_back(to);
+          append(found.back(), {{other}, Eigen::VectorXd::Constant(1, start)});
+        }
+      };
+      add_in_sizes(plain);
+      if (rest.parameters.size() < stage.fitted.parameters.size()) found.push_back(rest);
+      if (rest.parameters.size() > plain.parameters.size()) add_in_sizes(rest);
+    }
+  }
+  return found;
+}
+
+void take_alternative_refinements(const SearchContext& context, ModelStage& stage) {
+  if (is_explained(context, stage) || context.cancelled()) return;
+  const std::vector<ParameterSubset> others = alternative_refinements(context, stage);
+  std::vector<FitSummary> fits(others.size());
+  in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
+    fits[i] = refit_if_hopeful(context, others[i], stage.fitted.validation_rms_m);
+  });
+  for (FitSummary& other : fits) {
+    const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
+    if (context.cancelled() ||
+        !(other.validation_rms_m < (1.0 - worthwhile) * stage.fitted.validation_rms_m)) {
+      continue;
+    }
+    stage.fitted = std::move(other);
+  }
+  if (stage.fitted.jacobian.size() == 0) stage.fitted = refit_to_convergence(context, stage.fitted);
+}
+
+}  // namespace estimator::greybox::selection

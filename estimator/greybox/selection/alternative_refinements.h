@@ -1,0 +1,21 @@
+// Refinements that take the place of another: a friction that turns its sign gradually instead of
+// over a pre-sliding spring. Neither leads a fit to the other, so both are fitted.
+#pragma once
+
+#include <vector>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+/// The stage without each refinement that another can take the place of, and with the other in
+/// several sizes, beside the effect's further refinements or none; the shortest first. None where
+/// its effects have no such refinement.
+[[nodiscard]] std::vector<ParameterSubset> alternative_refinements(const SearchContext& context,
+                                                                   const ModelStage& stage);
+
+/// Takes such a refinement where the stage leaves more than noise and less with it.
+void take_alternative_refinements(const SearchContext& context, ModelStage& stage);
+
+}  // namespace estimator::greybox::selection
