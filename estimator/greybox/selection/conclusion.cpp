@@ -31,7 +31,8 @@ constexpr double kGreatWhite = 10.0;
 /// know. Disturbed axes of the confusion table stay below a tenth, a pendulum's weight fitted as a
 /// spring leaves four tenths and more.
 constexpr double kMostOfDrive_ratio = 0.33;
-/// Share of the motion from which on the error is no disturbance's: the model does not follow.
+/// Share of the motion from which on the error is no disturbance's: the model does not follow. An
+/// axis that nothing holds in place is carried as far by a slow force; its size tells there.
 constexpr double kDoesNotFollow = 0.5;
 /// Share of the squared error that a place has to explain to be named.
 constexpr double kNamesAPlace = 0.05;
@@ -196,10 +197,10 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
       disturbance &&
       disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
       floor_m > kGreatWhite * sensor_m;
-  const bool lost = rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
   const double drive_N = rms_of_drive_N(search, innovations.final.model.fitted);
-  const bool great = disturbance && disturbance->as == "force" && drive_N > 0.0 &&
-                     disturbance->value > kMostOfDrive_ratio * drive_N;
+  const bool pushed = disturbance && disturbance->as == "force" && drive_N > 0.0;
+  const bool great = pushed && disturbance->value > kMostOfDrive_ratio * drive_N;
+  const bool lost = !pushed && rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
   return !(incredible || beyond || white || lost || great);
 }
 
