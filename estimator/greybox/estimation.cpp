@@ -9,6 +9,7 @@
 #include "estimator/greybox/interval_checks.h"
 #include "estimator/greybox/multistart.h"
 #include "estimator/greybox/parallel_simulation.h"
+#include "estimator/greybox/pressure_scale.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox {
@@ -195,9 +196,15 @@ class Estimator {
     }
     solution_ = minimize(problem_, from, how);
     out_.evaluations += solution_.evaluations;
-    if (solution_.reason != estimator::nonlinear::StopReason::cancelled) return;
-    derivatives(problem_, solution_.x, solution_.residual, solution_.jacobian);
-    solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
+    if (solution_.reason == estimator::nonlinear::StopReason::cancelled) {
+      derivatives(problem_, solution_.x, solution_.residual, solution_.jacobian);
+      solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
+    }
+    FitSummary polished = as_fitted();
+    polished.at_bound = solution_.at_bound;
+    polished.jacobian = std::move(solution_.jacobian);
+    clear_pressure_scale(question_.model, polished);
+    solution_.jacobian = std::move(polished.jacobian);
   }
 
   void classify_starts() {

@@ -148,12 +148,16 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
 /// for one law, its course over the motion must be that of noise too.
 bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   if (!is_explained(context, stage)) return false;
-  if (stage.added.size() < 2 || context.cancelled()) return true;
-  InnovationSearch search;
-  search.final = settled(context, stage, {}, kMostTurns, wide(context.options.threads));
-  if (!std::isfinite(search.final.minus_two_log)) return true;
-  weigh_remainder(context, search);
-  return !search.physics_missing();
+  if (stage.added.size() < 2) return true;
+  for (const int turns : {1, kMostTurns}) {  // one turn shows it where nothing is missing
+    if (context.cancelled()) return true;
+    InnovationSearch search;
+    search.final = settled(context, stage, {}, turns, wide(context.options.threads));
+    if (!std::isfinite(search.final.minus_two_log)) return true;
+    weigh_remainder(context, search);
+    if (!search.physics_missing()) return true;
+  }
+  return false;
 }
 
 /// True where a spectral line explains more of what a search leaves than any curve does.
