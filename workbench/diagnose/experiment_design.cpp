@@ -35,15 +35,17 @@ std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
 using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
                               const greybox::FitSummary&);
 
-/// Separation of the closest pair, either way round.
+/// Separation of the closest pair, either way round, over what the truth itself leaves.
 double closest(const selection::SearchContext& context,
                const std::vector<greybox::FitSummary>& rivals,
                const std::vector<greybox::FitDataset>& truths, Separation separation) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t truth = 0; truth < truths.size(); ++truth) {
+    const double own = selection::own_separation(context, truths[truth], rivals[truth]);
     for (std::size_t other = 0; other < rivals.size(); ++other) {
       if (other == truth || context.cancelled()) continue;
-      least = std::min(least, separation(context, truths[truth], rivals[other]));
+      least =
+          std::min(least, separation(context, truths[truth], rivals[other]) / std::max(own, 1.0));
     }
   }
   return least;

@@ -12,6 +12,7 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "config/schema/spelling.h"
+#include "estimator/greybox/selection/parameter_subset.h"
 #include "workbench/diagnose/leaps.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
@@ -103,6 +104,26 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
   }
 }
 
+/// Gives every parameter one place: an effect that the model declares without a size is sought, or
+/// is part of the model where --free names it.
+void part_from_candidates(const DiagnosisRequest& request, selection::DiagnosisProblem& problem) {
+  const auto belongs = [](const greybox::FreeParameter& parameter,
+                          const plant_sim::EffectInfo& effect) {
+    return selection::belongs_to(parameter, effect.name);
+  };
+  if (request.selection.free.empty()) {
+    std::erase_if(problem.plant_parameters, [&](const greybox::FreeParameter& parameter) {
+      return std::any_of(problem.candidate_effects.begin(), problem.candidate_effects.end(),
+                         [&](const auto& effect) { return belongs(parameter, effect); });
+    });
+  } else {
+    std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
+      return std::any_of(problem.plant_parameters.begin(), problem.plant_parameters.end(),
+                         [&](const auto& parameter) { return belongs(parameter, effect); });
+    });
+  }
+}
+
 }  // namespace
 
 PreparedDiagnosis prepare(const DiagnosisRequest& request) {
@@ -124,6 +145,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
       std::move(model),
       greybox::fit_dataset(std::move(records), std::move(holdouts), prepared.split));
   prepared.problem.plant_parameters = std::move(parameters.parameters);
+  part_from_candidates(request, prepared.problem);
   require_samples(prepared.problem.data, prepared.problem.plant_parameters.size());
   if (request.flip) {
     for (greybox::Dataset& record : prepared.problem.data.records) {

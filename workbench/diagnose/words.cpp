@@ -198,6 +198,11 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
     out.push_back("On this plant no motion that was tried tells " + config::schema::listed(group) +
                   " apart: the name is a choice.");
   }
+  for (const std::string& name : d.established()) {
+    if (name != "drive_lag" && name != "transport_delay") continue;
+    out.push_back("A lag of the position sensor, its filter's for one, acts as " + name +
+                  " does: a second sensor would tell.");
+  }
 }
 
 }  // namespace

@@ -96,4 +96,14 @@ double fitted_separation(const SearchContext& context, const FitDataset& data,
   return fitted.validation_rms_m / unseen_m(data, rival);
 }
 
+double own_separation(const SearchContext& context, const FitDataset& data,
+                      const FitSummary& truth) {
+  DatasetSimulation run(context.problem.model, data, truth.parameters);
+  MatrixXd residual_m;
+  run.residuals(truth.theta, residual_m);
+  const double left_m = rms(residual_m.col(0), data.validation_mask);
+  return std::isfinite(left_m) ? left_m / unseen_m(data, truth)
+                               : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace estimator::greybox::selection

@@ -18,4 +18,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] double fitted_separation(const SearchContext& context, const FitDataset& data,
                                        const FitSummary& rival);
 
+/// The same for the model that predicted the data, nothing adjusted: what its own beginning of the
+/// motion, the steps of its simulation and rounding leave. Above 1, no model is told apart that
+/// leaves less.
+[[nodiscard]] double own_separation(const SearchContext& context, const FitDataset& data,
+                                    const FitSummary& truth);
+
 }  // namespace estimator::greybox::selection
