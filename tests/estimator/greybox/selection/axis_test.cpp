@@ -24,11 +24,19 @@ constexpr double kGain_N_per_V = 35.0;
 constexpr auto kSteady = [](double) { return kGain_N_per_V; };
 constexpr auto kNoRub = [](double) { return 0.0; };
 
+struct Rig {
+  double mass_kg = 98.0;
+  double damping_N_s_per_m = 210.0;
+  double kp_V_per_m = 30.0;
+  double kd_V_s_per_m = 0.0;
+  double shake_m = 0.0;  ///< of the reference at 5 Hz
+};
+
 /// M v' = g(t) u - d v - F - rub(v) under a proportional controller, in steps of 0.05 ms; 2 um of
 /// noise and an encoder of 1 um.
 template <class Gain, class Rub = decltype(kNoRub)>
 config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
-                                   const Rub& rub_N = kNoRub) {
+                                   const Rub& rub_N = kNoRub, const Rig& rig = {}) {
   constexpr double kTs_s = 0.005;
   constexpr int kSteps = 100;
   std::mt19937 random(7);
@@ -38,31 +46,37 @@ config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
   record.sample_time_s = kTs_s;
   double y_m = 0.0;
   double v_mps = 0.0;
+  double last_m = 0.0;
   for (int k = 0; k < 4000; ++k) {
     const double t_s = kTs_s * k;
     const double asked_m =
-        0.05 * (std::sin(0.9 * t_s) + 0.6 * std::sin(3.1 * t_s) + 0.3 * std::sin(8.3 * t_s));
+        0.05 * (std::sin(0.9 * t_s) + 0.6 * std::sin(3.1 * t_s) + 0.3 * std::sin(8.3 * t_s)) +
+        rig.shake_m * std::sin(31.4 * t_s);
     const double read_m = 1e-6 * std::round((y_m + noise_m(random)) / 1e-6);
-    const double u_V = std::clamp(30.0 * (asked_m - read_m), -10.0, 10.0);
+    const double rate_mps = (asked_m - read_m - last_m) / kTs_s;
+    last_m = asked_m - read_m;
+    const double u_V =
+        std::clamp(rig.kp_V_per_m * last_m + rig.kd_V_s_per_m * rate_mps, -10.0, 10.0);
     record.t_s.push_back(t_s);
     record.u_V.push_back(u_V);
     record.y_m.push_back(read_m);
     for (int i = 0; i < kSteps; ++i) {
       constexpr double kStep_s = kTs_s / kSteps;
-      const double force_N =
-          gain_N_per_V(t_s + kStep_s * i) * u_V - 210.0 * v_mps - load_N - rub_N(v_mps);
+      const double force_N = gain_N_per_V(t_s + kStep_s * i) * u_V - rig.damping_N_s_per_m * v_mps -
+                             load_N - rub_N(v_mps);
       const double before_mps = v_mps;
-      v_mps += kStep_s * force_N / 98.0;
+      v_mps += kStep_s * force_N / rig.mass_kg;
       y_m += 0.5 * kStep_s * (before_mps + v_mps);
     }
   }
   return record;
 }
 
-SearchContext context_of(const config::record::Record& record) {
+SearchContext context_of(const config::record::Record& record, double mass_kg = 100.0) {
   plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
                                                      "/config/models/force_driven_axis.toml");
   *model.value("gain_N_per_V") = kGain_N_per_V;
+  *model.value("mass_kg") = mass_kg;
   return {make_problem(std::move(model), fit_dataset({dataset_of(record)}, {})), {}};
 }
 
@@ -108,6 +122,41 @@ TEST(Axis, IsHealthyInARecordThatBeginsInMotionAndHasAGap) {
   const Diagnosis d = diagnose(context.problem, context.options);
   EXPECT_EQ(d.verdict, Verdict::nothing_missing);
   EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+}
+
+/// A force whose power is even up to 3 Hz, in the steps of axis_record().
+class RandomForce {
+ public:
+  RandomForce(double rms_N, unsigned seed) : rms_N_(rms_N), random_(seed) {}
+  double next_N() {
+    constexpr double kRate = 5e-5 * 2.0 * 3.141592653589793 * 3.0;
+    value_N_ += -kRate * value_N_ + std::sqrt(2.0 * kRate) * rms_N_ * normal_(random_);
+    return value_N_;
+  }
+
+ private:
+  double rms_N_;
+  double value_N_ = 0.0;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+};
+
+// Nothing holds the axis in place: the force carries it as far as it moves, and more friction or
+// damping would leave less.
+TEST(Axis, IsHealthyWhereAForceCarriesItFar) {
+  RandomForce force(12.0, 3);
+  const Rig light{12.0, 50.0, 158.0, 8.9, 0.02};
+  SearchContext context =
+      context_of(axis_record(
+                     kSteady, 0.0, [&](double) { return force.next_N(); }, light),
+                 light.mass_kg);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
+  ASSERT_TRUE(d.disturbance);
+  EXPECT_NEAR(d.disturbance->value, 12.0, 3.0);
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("mass_kg"), light.mass_kg, 0.5);
+  EXPECT_NEAR(*better.value("damping_N_s_per_m"), light.damping_N_s_per_m, 10.0);
 }
 
 // A contact that turns its sign over a few mm/s; neither a spring before it slides nor a jump does.
