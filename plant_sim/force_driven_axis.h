@@ -94,8 +94,9 @@ class ForceDrivenAxis {
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
     holding_N_ = effects.holding_N();
+    braking_N_ = effects.braking_N();
     gradual_N_ = effects.gradual_N();
-    rubs_ = !all(holding_N_ + gradual_N_ <= S(0.0));
+    rubs_ = !all(braking_N_ + gradual_N_ <= S(0.0));
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
     spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
                        S(kFiner) * effects.coupling_rate_per_s());
@@ -142,7 +143,8 @@ class ForceDrivenAxis {
     const S parts =
         clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
     if (!rubs_) return parts;
-    const auto turns = turns_within(v_mps, free_N, holding_N_, S(step_s_) * inverse_mass_);
+    const auto turns =
+        turns_within(v_mps, free_N, holding_N_, braking_N_, S(step_s_) * inverse_mass_);
     return max(parts, select(turns, S(kTurnDivisions), S(1.0)));
   }
 
@@ -170,7 +172,7 @@ class ForceDrivenAxis {
 
   double step_s_ = 0.0;
   bool rubs_ = false;
-  S driven_kg_, inverse_mass_, holding_N_, gradual_N_, spring_rate_;
+  S driven_kg_, inverse_mass_, holding_N_, braking_N_, gradual_N_, spring_rate_;
   S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
 };
 

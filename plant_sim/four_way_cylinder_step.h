@@ -94,7 +94,8 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.holding_N = effects.holding_N();
   derived_.gradual_N = effects.gradual_N();
   derived_.turns_gradually = !all(derived_.gradual_N <= S(0.0));
-  derived_.holds = !all(derived_.holding_N <= S(0.0));
+  derived_.braking_N = effects.braking_N();
+  derived_.holds = !all(derived_.braking_N <= S(0.0));
   arrest_kg_per_s_ = derived_.mass_kg * S(1.0 / step_s);
   if constexpr (!Design::kEqualSides) derived_.weight_N = Design::weight_N(p, mass_kg);
   derived_.steady_rate = max(max(spool.wv_rad_per_s, derived_.two_zeta_wv), derived_.lag_rate);
@@ -218,7 +219,8 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   S turned = 1.0;
   if (derived_.holds) {
     const S step_per_kg = S(derived_.step_s) * derived_.inverse_mass;
-    const auto turns = turns_within(state.v_mps, free_N(), derived_.holding_N, step_per_kg);
+    const auto turns =
+        turns_within(state.v_mps, free_N(), derived_.holding_N, derived_.braking_N, step_per_kg);
     turned = select(turns, S(kTurnDivisions), turned);
   }
   const S once_kg_per_s = derived_.mass_kg * S(1.0 / derived_.step_s);

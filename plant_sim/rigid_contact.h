@@ -10,19 +10,19 @@ namespace plant_sim {
 inline constexpr double kTurnDivisions = 16.0;
 
 /// Mask of the lanes in which the contact may turn within a step. `free_N`: the sum of all other
-/// forces; `holding_N`: what it holds at rest, 0 where there is none; `step_per_kg`: step over
-/// mass.
+/// forces; `holding_N`, `braking_N`: what it holds at rest and brakes with at most, 0 where there
+/// is none; `step_per_kg`: step over mass.
 template <class S>
-auto turns_within(const S& v_mps, const S& free_N, const S& holding_N, const S& step_per_kg) {
+auto turns_within(const S& v_mps, const S& free_N, const S& holding_N, const S& braking_N,
+                  const S& step_per_kg) {
   constexpr double kRest_mps = 1e-9;  // a rod that is held creeps no faster
-  constexpr double kMargin =
-      2.0;  // forces change within the step, and a contact holds a step ahead
-  const S along_N = select(v_mps < S(0.0), -free_N, free_N) - holding_N;
+  constexpr double kMargin = 2.0;     // forces change within the step, which may hold ahead
+  const S along_N = select(v_mps < S(0.0), -free_N, free_N) - braking_N;
   const S ends_mps = abs(v_mps) + S(kMargin) * step_per_kg * along_N;
   const auto resting = abs(v_mps) <= S(kRest_mps);
   const S lets_go = select(abs(free_N) * S(kMargin) >= holding_N, S(1.0), S(0.0));
   const S turns = select(resting, lets_go, select(ends_mps <= S(0.0), S(1.0), S(0.0)));
-  return (holding_N > S(0.0)) & (turns > S(0.0));
+  return (braking_N > S(0.0)) & (turns > S(0.0));
 }
 
 }  // namespace plant_sim

@@ -210,6 +210,14 @@ class EffectSet : public EffectStore<S, E...> {
     return sum_N;
   }
 
+  /// The most that the same brake with.
+  [[nodiscard]] S braking_N() const {
+    S sum_N = 0.0;
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::braking_N(p); });
+    return sum_N;
+  }
+
   /// The most that dry frictions rub whose force turns its sign gradually.
   [[nodiscard]] S gradual_N() const {
     S sum_N = 0.0;

@@ -10,7 +10,7 @@
 // z   bristle deflection, m
 // s1  presliding_damping_N_s_per_m    with k only; 0 is Dahl's law, above it the LuGre law
 // Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
-// would stop the rod within one integration step, F is just the force that does so, never one that
+// would stop the rod within one part of a step, F is just the force that does so, never one that
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
 // sliding asks for no shorter step. A transition steeper than a step resolves is the rigid contact.
 // All dissipate: F v >= 0,
@@ -57,7 +57,7 @@ struct Friction {
       v(ParameterInfo{"stribeck_mps", "speed over which static falls to sliding friction", 0.0,
                       10.0, 0.01, 0.0, 0.0, 1},
         stribeck_mps);
-      v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is rigid", 0.0,
+      v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is none", 0.0,
                       1e9, 1e7, 0.0, 0.0, 2},
         presliding_stiffness_N_per_m);
       v(ParameterInfo{"presliding_damping_N_s_per_m", "damping before it slides", 0.0, 1e5, 5000.0,
@@ -119,14 +119,17 @@ struct Friction {
 
   /// What a rigid contact holds at rest, whichever way it is pushed; 0 where it is not rigid.
   static S holding_N(const Parameters& p) {
-    const auto rigid = (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps <= S(0.0));
     const S level_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
-    return select(rigid, level_N, S(0.0));
+    return select(is_rigid(p), level_N, S(0.0));
   }
 
-  /// The most that a contact with a transition rubs; 0 where it has none.
+  /// The most that a rigid contact brakes with; 0 where it is not rigid.
+  static S braking_N(const Parameters& p) { return select(is_rigid(p), most_N(p), S(0.0)); }
+
+  /// The most that a gradual contact rubs; 0 where it is not gradual.
   static S gradual_N(const Parameters& p) {
-    return select(p.transition_mps > S(0.0), most_N(p), S(0.0));
+    const auto gradual = (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps > S(0.0));
+    return select(gradual, most_N(p), S(0.0));
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
@@ -144,6 +147,9 @@ struct Friction {
   }
 
  private:
+  static auto is_rigid(const Parameters& p) {
+    return (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps <= S(0.0));
+  }
   static S most_N(const Parameters& p) {
     return max(p.coulomb_N * (S(1.0) + abs(p.direction_ratio)), p.static_N);
   }
@@ -186,8 +192,7 @@ struct Friction {
   /// exact for an even z* and constant h / |dx|: for a step of many h as well, where z only lags.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
-    if (all(abs(travel_m) <= S(0.0)))
-      return memory.deflection_m;  // avoids a division by zero; the result is the same
+    if (all(abs(travel_m) <= S(0.0))) return memory.deflection_m;
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
     const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
     const S from_N = max(level_at_N(p, direction, memory.rise_ratio), S(kLeastLevel_N));
@@ -199,7 +204,8 @@ struct Friction {
         select(few, S(1.0) - S(0.5) * lengths, (S(1.0) - remains) / select(few, S(1.0), lengths));
     const S from_m = direction * from_N / k;
     const S to_m = direction * to_N / k;
-    return to_m + (memory.deflection_m - from_m) * remains - (to_m - from_m) * share;
+    const S moved_m = to_m + (memory.deflection_m - from_m) * remains - (to_m - from_m) * share;
+    return select(abs(travel_m) <= S(0.0), memory.deflection_m, moved_m);
   }
 };
 

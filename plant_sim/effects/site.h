@@ -15,8 +15,8 @@
 //   inertia       S added_mass_kg(p)                         mass that moves with the rod
 //   force         S resisting_N(p, y_m, v_mps)               a force against extension
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
-//                 S holding_N(p), gradual_N(p)               at rest by a contact without a spring,
-//                                                            at most by one that turns gradually
+//                 S holding_N(p), braking_N(p)               by a rigid contact: at rest, at most
+//                 S gradual_N(p)                             at most by one that turns gradually
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
 //                 S coupling_rate_per_s(p)                   its resonance, rad/s,

@@ -1,6 +1,7 @@
 #include "workbench/diagnose/experiment_design.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -42,6 +43,7 @@ double closest(const selection::SearchContext& context,
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t truth = 0; truth < truths.size(); ++truth) {
     const double own = selection::own_separation(context, truths[truth], rivals[truth]);
+    if (!std::isfinite(own)) return 0.0;  // the truth itself cannot follow: nothing is told apart
     for (std::size_t other = 0; other < rivals.size(); ++other) {
       if (other == truth || context.cancelled()) continue;
       least =

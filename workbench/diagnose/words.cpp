@@ -200,7 +200,7 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   }
   for (const std::string& name : d.established()) {
     if (name != "drive_lag" && name != "transport_delay") continue;
-    out.push_back("A lag of the position sensor, its filter's for one, acts as " + name +
+    out.push_back("A lag of the position sensor, such as its filter's, acts as " + name +
                   " does: a second sensor would tell.");
   }
 }

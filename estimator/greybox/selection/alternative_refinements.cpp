@@ -45,6 +45,9 @@ std::vector<ParameterSubset> alternative_refinements(const SearchContext& contex
       if (rest.parameters.size() > plain.parameters.size()) add_in_sizes(rest);
     }
   }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return a.parameters.size() < b.parameters.size();
+  });
   return found;
 }
 

@@ -30,9 +30,9 @@ constexpr double kBeyondDisturbance = 2.0;
 constexpr double kWhite = 0.95;
 constexpr double kGreatWhite = 10.0;
 /// Ratio of a random force to the drive's, both RMS, from which on it is what the model does not
-/// know: a servo's pendulum fitted as a spring leaves 1.3 to 9. From the lower one on, where a
-/// curve explains some of it.
+/// know: a servo's pendulum fitted as a spring leaves 1.3 to 9.
 constexpr double kMostOfDrive_ratio = 0.8;
+/// The same where a curve explains some of it.
 constexpr double kMuchOfDrive_ratio = 0.33;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow. An
 /// axis that nothing holds in place is carried as far by a slow force; its size tells there.

@@ -101,7 +101,7 @@ double own_separation(const SearchContext& context, const FitDataset& data,
   DatasetSimulation run(context.problem.model, data, truth.parameters);
   MatrixXd residual_m;
   run.residuals(truth.theta, residual_m);
-  const double left_m = rms(residual_m.col(0), data.validation_mask);
+  const double left_m = rms(residual_m.col(0), data.all_mask);
   return std::isfinite(left_m) ? left_m / unseen_m(data, truth)
                                : std::numeric_limits<double>::infinity();
 }

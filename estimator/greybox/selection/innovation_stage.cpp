@@ -23,7 +23,8 @@ constexpr double kTolerance = 1e-5;
 constexpr double kFarBehind = 100.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
-/// ... and each parameter of one that takes another's place.
+/// ... and each parameter that one has more than the refinement whose place it takes. A shorter one
+/// may be as much less likely.
 constexpr double kPerRefinement = 6.0;
 /// Fall of -2 log L by a step of a trial's noise model below which it is the last.
 constexpr double kLastTrialNoiseStep = 1.0;
@@ -83,6 +84,7 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   if (from_file_too && effort == InnovationFit::converged) {
     const ModelStage found{stage.model.added, fitted};
     for (const ParameterSubset& other : alternative_refinements(plain, found)) {
+      if (plain.cancelled()) break;
       const double more = static_cast<double>(other.parameters.size()) -
                           static_cast<double>(fitted.parameters.size());
       try_other(other, kPerRefinement * more + kRevived);

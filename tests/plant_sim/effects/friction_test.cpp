@@ -71,6 +71,24 @@ TEST(Friction, BrakesAFreeMassAlongTheClosedFormOfItsTransition) {
   }
 }
 
+TEST(Friction, StopsACoastingMassInTheWayOfTheClosedFormInEitherDirection) {
+  for (const double direction : {1.0, -1.0}) {
+    auto axis = at_rest<Axis>();
+    axis->parameters.damping_N_s_per_m = 0.0;
+    axis->parameters.mass_kg = 50.0;
+    set_effect(*axis, "friction", "coulomb_N", 100.0);
+    set_effect(*axis, "friction", "direction_ratio", 0.5);
+    axis->prepare(1e-3);
+    axis->reset();
+    const double from_m = axis->state.y_m;
+    axis->state.v_mps = direction * 0.2003;
+    hold(*axis, 0.0, 0.5);
+    const double deceleration = (direction > 0.0 ? 150.0 : 50.0) / 50.0;
+    // the part in which it stops is a relaxation: deceleration (step / 16)^2 / 2
+    EXPECT_NEAR(std::abs(axis->state.y_m - from_m), 0.2003 * 0.2003 / (2.0 * deceleration), 1e-8);
+  }
+}
+
 TEST(Friction, GradualContactNeverDrivesAndIsTheSlidingLevelBeyondItsTransition) {
   F::Parameters p;
   p.coulomb_N = 100.0;
