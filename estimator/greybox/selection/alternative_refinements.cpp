@@ -9,8 +9,11 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Starts, in typical sizes.
+/// Starts, in typical sizes, and the least that is another law than none.
 constexpr double kStarts[] = {1.0, 0.2, 5.0};
+constexpr double kLeast = 0.05;
+/// Error over the noise beyond which much else is missing: the course of a refinement is not seen.
+constexpr double kFarFromFloor_ratio = 100.0;
 
 bool is_in(const FitSummary& fitted, const FreeParameter& parameter) {
   return std::any_of(fitted.parameters.begin(), fitted.parameters.end(),
@@ -19,14 +22,23 @@ bool is_in(const FitSummary& fitted, const FreeParameter& parameter) {
 
 }  // namespace
 
+bool ends_at_least(const FitSummary& fitted) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    if (p.instead_of > 0 && fitted.theta[static_cast<Eigen::Index>(i)] <= p.lower) return true;
+  }
+  return false;
+}
+
 std::vector<ParameterSubset> alternative_refinements(const SearchContext& context,
                                                      const ModelStage& stage) {
   std::vector<ParameterSubset> found;
   for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
     const auto& added = stage.added;
     if (std::find(added.begin(), added.end(), effect.name) == added.end()) continue;
-    for (const FreeParameter& other : effect_parameters(effect, kEveryRefinement)) {
+    for (FreeParameter other : effect_parameters(effect, kEveryRefinement)) {
       if (other.instead_of == 0 || is_in(stage.fitted, other)) continue;
+      other.lower = std::max(other.lower, kLeast);
       const ParameterSubset plain = subset(stage.fitted, [&](const FreeParameter& p) {
         return !belongs_to(p, effect.name) || p.refinement == 0;
       });
@@ -52,7 +64,11 @@ std::vector<ParameterSubset> alternative_refinements(const SearchContext& contex
 }
 
 void take_alternative_refinements(const SearchContext& context, ModelStage& stage) {
-  if (is_explained(context, stage) || context.cancelled()) return;
+  const double left_m = stage.fitted.validation_rms_m;
+  if (is_explained(context, stage) || context.cancelled() ||
+      left_m > kFarFromFloor_ratio * context.problem.data.noise_floor_m) {
+    return;
+  }
   const std::vector<ParameterSubset> others = alternative_refinements(context, stage);
   std::vector<FitSummary> fits(others.size());
   in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
@@ -60,7 +76,7 @@ void take_alternative_refinements(const SearchContext& context, ModelStage& stag
   });
   for (FitSummary& other : fits) {
     const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
-    if (context.cancelled() ||
+    if (context.cancelled() || ends_at_least(other) ||
         !(other.validation_rms_m < (1.0 - worthwhile) * stage.fitted.validation_rms_m)) {
       continue;
     }

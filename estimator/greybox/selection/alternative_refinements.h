@@ -15,7 +15,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] std::vector<ParameterSubset> alternative_refinements(const SearchContext& context,
                                                                    const ModelStage& stage);
 
-/// Takes such a refinement where the stage leaves more than noise and less with it.
+/// True where such a refinement ends at the least that is another law than none.
+[[nodiscard]] bool ends_at_least(const FitSummary& fitted);
+
+/// Takes such a refinement where the stage leaves more than noise, but not far more, and less with it.
 void take_alternative_refinements(const SearchContext& context, ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

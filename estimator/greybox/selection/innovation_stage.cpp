@@ -71,7 +71,7 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
     if (cost(other) > cost(fitted) + kFarBehind) return;
     start.start = other.theta;
     other = fit_innovations(stage.context, start, width, effort);
-    if (cost(other) + enough < cost(fitted)) fitted = std::move(other);
+    if (cost(other) + enough < cost(fitted) && !ends_at_least(other)) fitted = std::move(other);
   };
   const auto try_start = [&](Eigen::VectorXd start, double enough) {
     try_other({all.parameters, std::move(start)}, enough);

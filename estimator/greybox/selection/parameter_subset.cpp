@@ -117,7 +117,9 @@ void drop_idle_refinements(FitSummary& fitted) {
   const auto count = static_cast<Index>(fitted.parameters.size());
   if (fitted.jacobian.cols() != count) return;
   const auto is_idle_parameter = [&](Index i) {
-    return fitted.theta[i] == 0.0 || fitted.jacobian.col(i).cwiseAbs().maxCoeff() == 0.0;
+    const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
+    const bool least = p.instead_of > 0 && fitted.theta[i] <= p.lower;
+    return fitted.theta[i] == 0.0 || least || fitted.jacobian.col(i).cwiseAbs().maxCoeff() == 0.0;
   };
   std::vector<Index> kept;
   for (Index i = 0; i < count; ++i) {
