@@ -159,7 +159,8 @@ TEST(Axis, IsHealthyWhereAForceCarriesItFar) {
   EXPECT_NEAR(*better.value("damping_N_s_per_m"), light.damping_N_s_per_m, 10.0);
 }
 
-// A contact that turns its sign over 0.3 or 2 mm/s; neither a spring before it slides nor a jump does.
+// A contact that turns its sign over 0.3 or 2 mm/s; neither a spring before it slides nor a jump
+// does.
 TEST(AxisFriction, TurnsGradually) {
   for (const double transition_mps : {3e-4, 2e-3}) {
     const SearchContext context = context_of(axis_record(
