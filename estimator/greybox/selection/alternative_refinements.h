@@ -18,7 +18,8 @@ namespace estimator::greybox::selection {
 /// True where such a refinement ends at the least that is another law than none.
 [[nodiscard]] bool ends_at_least(const FitSummary& fitted);
 
-/// Takes such a refinement where the stage leaves more than noise, but not far more, and less with it.
+/// Takes such a refinement where the stage leaves more than noise, but not far more, and less with
+/// it.
 void take_alternative_refinements(const SearchContext& context, ModelStage& stage);
 
 }  // namespace estimator::greybox::selection
