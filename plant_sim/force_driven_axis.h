@@ -93,10 +93,8 @@ class ForceDrivenAxis {
         (parameters.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
-    holding_N_ = effects.holding_N();
-    braking_N_ = effects.braking_N();
-    gradual_N_ = effects.gradual_N();
-    rubs_ = !all(braking_N_ + gradual_N_ <= S(0.0));
+    contact_ = effects.contact_levels();
+    rubs_ = !all(contact_.braking_N + contact_.gradual_N <= S(0.0));
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
     spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
                        S(kFiner) * effects.coupling_rate_per_s());
@@ -132,7 +130,7 @@ class ForceDrivenAxis {
       free_N -= parameters.damping_N_s_per_m * v_mps +
                 effects.resisting_N(state.y_m, v_mps, [&] { return motion(state, drive_V); });
     }
-    const S change_mps = S(2.0 * step_s_) * (abs(free_N) + gradual_N_) * inverse_mass_;
+    const S change_mps = S(2.0 * step_s_) * (abs(free_N) + contact_.gradual_N) * inverse_mass_;
     const S slope = parameters.damping_N_s_per_m +
                     effects.slope_N_s_per_m(v_mps, max(abs(v_mps) - change_mps, S(0.0)));
     S fastest = max(slope * inverse_mass_, spring_rate_);
@@ -143,8 +141,7 @@ class ForceDrivenAxis {
     const S parts =
         clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
     if (!rubs_) return parts;
-    const auto turns =
-        turns_within(v_mps, free_N, holding_N_, braking_N_, S(step_s_) * inverse_mass_);
+    const auto turns = turns_within(v_mps, free_N, contact_, S(step_s_) * inverse_mass_);
     return max(parts, select(turns, S(kTurnDivisions), S(1.0)));
   }
 
@@ -172,7 +169,8 @@ class ForceDrivenAxis {
 
   double step_s_ = 0.0;
   bool rubs_ = false;
-  S driven_kg_, inverse_mass_, holding_N_, braking_N_, gradual_N_, spring_rate_;
+  effects::ContactLevels<S> contact_;
+  S driven_kg_, inverse_mass_, spring_rate_;
   S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
 };
 

@@ -144,10 +144,10 @@ class FourWayCylinder {
     CylinderSide<S> in, out;
     EndCushions<S> cushions;
     bool cushioned;
-    bool holds, turns_gradually;
+    effects::ContactLevels<S> contact;
+    bool brakes, turns_gradually;
     S valve_gain_m_per_V, most_orifice;
-    S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, holding_N, braking_N, gradual_N,
-        steady_rate;
+    S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, steady_rate;
     S weight_N;
     S spool_limit_mps, stiffness_N_per_m, conductance_m3ps_per_Pa;
     double step_s;

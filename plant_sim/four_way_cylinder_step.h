@@ -91,11 +91,9 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   const S mass_kg = p.mass_kg + effects.added_mass_kg();
   derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
-  derived_.holding_N = effects.holding_N();
-  derived_.gradual_N = effects.gradual_N();
-  derived_.turns_gradually = !all(derived_.gradual_N <= S(0.0));
-  derived_.braking_N = effects.braking_N();
-  derived_.holds = !all(derived_.braking_N <= S(0.0));
+  derived_.contact = effects.contact_levels();
+  derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));
+  derived_.turns_gradually = !all(derived_.contact.gradual_N <= S(0.0));
   arrest_kg_per_s_ = derived_.mass_kg * S(1.0 / step_s);
   if constexpr (!Design::kEqualSides) derived_.weight_N = Design::weight_N(p, mass_kg);
   derived_.steady_rate = max(max(spool.wv_rad_per_s, derived_.two_zeta_wv), derived_.lag_rate);
@@ -134,7 +132,7 @@ S FourWayCylinder<S, Design>::fast_mps() const {
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
 }
 
-/// What drives the rod but for dry friction.
+/// Sum of all forces on the rod but dry friction.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::free_N() const {
   const S& v_mps = state.v_mps;
@@ -145,7 +143,7 @@ S FourWayCylinder<S, Design>::free_N() const {
 /// The slowest that the rod can become within the step.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::slow_mps(const S& free_N) const {
-  const S change_mps = S(2.0 * derived_.step_s) * (abs(free_N) + derived_.gradual_N);
+  const S change_mps = S(2.0 * derived_.step_s) * (abs(free_N) + derived_.contact.gradual_N);
   return max(abs(state.v_mps) - change_mps * derived_.inverse_mass, S(0.0));
 }
 
@@ -217,10 +215,9 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   const S drive_V = drive_V_;
   const auto whole = ordinary(drive_V);
   S turned = 1.0;
-  if (derived_.holds) {
+  if (derived_.brakes) {
     const S step_per_kg = S(derived_.step_s) * derived_.inverse_mass;
-    const auto turns =
-        turns_within(state.v_mps, free_N(), derived_.holding_N, derived_.braking_N, step_per_kg);
+    const auto turns = turns_within(state.v_mps, free_N(), derived_.contact, step_per_kg);
     turned = select(turns, S(kTurnDivisions), turned);
   }
   const S once_kg_per_s = derived_.mass_kg * S(1.0 / derived_.step_s);

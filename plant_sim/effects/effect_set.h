@@ -202,28 +202,17 @@ class EffectSet : public EffectStore<S, E...> {
     return contact.drive_N;
   }
 
-  /// What dry frictions without a spring hold at rest.
-  [[nodiscard]] S holding_N() const {
-    S sum_N = 0.0;
+  /// Sums over all dry frictions.
+  [[nodiscard]] ContactLevels<S> contact_levels() const {
+    ContactLevels<S> sum;
     this->template for_each_active<Site::dry_friction>(
-        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::holding_N(p); });
-    return sum_N;
-  }
-
-  /// The most that the same brake with.
-  [[nodiscard]] S braking_N() const {
-    S sum_N = 0.0;
-    this->template for_each_active<Site::dry_friction>(
-        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::braking_N(p); });
-    return sum_N;
-  }
-
-  /// The most that dry frictions rub whose force turns its sign gradually.
-  [[nodiscard]] S gradual_N() const {
-    S sum_N = 0.0;
-    this->template for_each_active<Site::dry_friction>(
-        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum_N += T::gradual_N(p); });
-    return sum_N;
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          const ContactLevels<S> one = T::levels(p);
+          sum.holding_N += one.holding_N;
+          sum.braking_N += one.braking_N;
+          sum.gradual_N += one.gradual_N;
+        });
+    return sum;
   }
 
   /// At speeds from `least_mps` to `v_mps`.

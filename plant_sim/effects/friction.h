@@ -117,19 +117,13 @@ struct Friction {
                   select(gradual & turns, S(kFiner) * most_N(p) / transition_mps, S(0.0)));
   }
 
-  /// What a rigid contact holds at rest, whichever way it is pushed; 0 where it is not rigid.
-  static S holding_N(const Parameters& p) {
-    const S level_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
-    return select(is_rigid(p), level_N, S(0.0));
-  }
-
-  /// The most that a rigid contact brakes with; 0 where it is not rigid.
-  static S braking_N(const Parameters& p) { return select(is_rigid(p), most_N(p), S(0.0)); }
-
-  /// The most that a gradual contact rubs; 0 where it is not gradual.
-  static S gradual_N(const Parameters& p) {
-    const auto gradual = (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps > S(0.0));
-    return select(gradual, most_N(p), S(0.0));
+  static ContactLevels<S> levels(const Parameters& p) {
+    const auto without_spring = p.presliding_stiffness_N_per_m <= S(0.0);
+    const auto rigid = without_spring & (p.transition_mps <= S(0.0));
+    const auto gradual = without_spring & (p.transition_mps > S(0.0));
+    const S least_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
+    return {select(rigid, least_N, S(0.0)), select(rigid, most_N(p), S(0.0)),
+            select(gradual, most_N(p), S(0.0))};
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
@@ -147,9 +141,6 @@ struct Friction {
   }
 
  private:
-  static auto is_rigid(const Parameters& p) {
-    return (p.presliding_stiffness_N_per_m <= S(0.0)) & (p.transition_mps <= S(0.0));
-  }
   static S most_N(const Parameters& p) {
     return max(p.coulomb_N * (S(1.0) + abs(p.direction_ratio)), p.static_N);
   }

@@ -15,8 +15,7 @@
 //   inertia       S added_mass_kg(p)                         mass that moves with the rod
 //   force         S resisting_N(p, y_m, v_mps)               a force against extension
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
-//                 S holding_N(p), braking_N(p)               by a rigid contact: at rest, at most
-//                 S gradual_N(p)                             at most by one that turns gradually
+//                 ContactLevels<S> levels(p)                 by which steps are divided
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
 //                 S coupling_rate_per_s(p)                   its resonance, rad/s,
@@ -86,6 +85,14 @@ struct DryContact {
   /// Mass over the part of a step that is integrated at once: the force per speed that stops it
   /// within one.
   S arrest_kg_per_s;
+};
+
+/// Forces of dry friction that decide how a step is divided; 0 where it has no such contact.
+template <class S>
+struct ContactLevels {
+  S holding_N = 0.0;  ///< a rigid contact holds so much at rest, whichever way it is pushed
+  S braking_N = 0.0;  ///< a rigid contact brakes with no more
+  S gradual_N = 0.0;  ///< a contact that turns its sign gradually rubs with no more
 };
 
 /// A mass on a spring, ahead of the moving part that carries it.

@@ -29,7 +29,7 @@ struct Rig {
   double damping_N_s_per_m = 210.0;
   double kp_V_per_m = 30.0;
   double kd_V_s_per_m = 0.0;
-  double shake_m = 0.0;  ///< of the reference at 5 Hz
+  double shake_m = 0.0;  ///< amplitude of the reference at 5 Hz
 };
 
 /// M v' = g(t) u - d v - F - rub(v) under a proportional controller, in steps of 0.05 ms; 2 um of
