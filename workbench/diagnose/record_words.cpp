@@ -119,7 +119,7 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
     out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
                      (d.by_innovations ? "estimated with the model" : "the rounding alone"));
   }
-  if (d.step_error_m > kCoarseStep * d.noise_floor_m) {
+  if (!d.loses_motion && d.step_error_m > kCoarseStep * d.noise_floor_m) {
     out.push_back(fmt::format(
         "a quarter of the integration step changes the simulation by {}, {} times the noise "
         "floor: values may be off by more than their errors; run again with --set step_s={:.2g}",

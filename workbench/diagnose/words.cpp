@@ -279,6 +279,11 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   for (std::string& text : record_remarks(outcome)) out.push_back(std::move(text));
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
+  if (d.loses_motion) {
+    out.emplace_back(
+        "The rig amplifies the smallest differences until a simulation loses the motion, whatever "
+        "its numbers: effects and errors rest on the predictions from sample to sample.");
+  }
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
   if (d.verdict != selection::Verdict::changing) {

@@ -37,6 +37,11 @@ constexpr double kMuchOfDrive_ratio = 0.33;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow. An
 /// axis that nothing holds in place is carried as far by a slow force; its size tells there.
 constexpr double kDoesNotFollow = 0.5;
+/// Share of the drive, or of the motion for an error of the reading, up to which a disturbance is
+/// next to nothing, and share of the motion from which on it carries a simulation away: where both
+/// hold, the rig has amplified it.
+constexpr double kNextToNothing = 0.01;
+constexpr double kCarriedAway = 0.2;
 /// Share of the squared error that a place has to explain to be named.
 constexpr double kNamesAPlace = 0.05;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
@@ -189,6 +194,19 @@ double sensor_noise_m(const SearchContext& search, const InnovationSearch& innov
   return floor_assumed ? innovations.final.noise.noise.sensor_m : search.problem.data.noise_floor_m;
 }
 
+bool loses_motion(const SearchContext& search, const InnovationSearch& innovations,
+                  const std::optional<Disturbance>& disturbance) {
+  const FitDataset& data = search.problem.data;
+  const double motion_m = motion_rms_m(data);
+  if (!disturbance || !(disturbance->rms_m > kCarriedAway * motion_m)) return false;
+  if (disturbance->as == "reading") {
+    return disturbance->value * std::sqrt(length_s(data)) < kNextToNothing * motion_m;
+  }
+  return disturbance->as == "force" &&
+         disturbance->value <
+             kNextToNothing * rms_of_drive_N(search, innovations.final.model.fitted);
+}
+
 bool noise_is_credible(const SearchContext& search, const InnovationSearch& innovations,
                        double sensor_m, const std::optional<Disturbance>& disturbance,
                        double rms_m) {
@@ -196,8 +214,9 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
   const bool suspicious = innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
   const bool incredible = floor_m > kIncredible * rms_m && suspicious;
   const bool beyond = rms_m > kBeyondDisturbance * floor_m;
+  const bool amplified = loses_motion(search, innovations, disturbance);
   const bool white =
-      disturbance &&
+      disturbance && !amplified &&
       disturbance->corner_Hz > kWhite * disturbance::most_corner_Hz(search.problem.data) &&
       floor_m > kGreatWhite * sensor_m;
   const double drive_N = rms_of_drive_N(search, innovations.final.model.fitted);
@@ -207,7 +226,8 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
                      innovations.curve_nats > kHidden_nats + innovations.inexact_nats);
   const double most_ratio = hides ? kMuchOfDrive_ratio : kMostOfDrive_ratio;
   const bool great = pushed && disturbance->value > most_ratio * drive_N;
-  const bool lost = !pushed && rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
+  const bool lost =
+      !pushed && !amplified && rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
   return !(incredible || beyond || white || lost || great);
 }
 
@@ -302,6 +322,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       innovations.physics_missing() ||
       (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
                                                   result.disturbance, result.rms_after_m));
+  result.loses_motion = !physics && loses_motion(search, innovations, result.disturbance);
   if (result.disturbance) limit(*result.disturbance, result.rms_after_m);
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());

@@ -23,6 +23,11 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
 [[nodiscard]] double sensor_noise_m(const SearchContext& search,
                                     const InnovationSearch& innovations, bool floor_assumed);
 
+/// True where the rig amplifies a disturbance that is next to nothing until a simulation loses the
+/// motion: its error is then no measure of a model.
+[[nodiscard]] bool loses_motion(const SearchContext& search, const InnovationSearch& innovations,
+                                const std::optional<Disturbance>& disturbance);
+
 /// True where what sensor and disturbance would cause in a simulation, by the noise model, agrees
 /// with its error `rms_m`: what explains the samples has to explain the simulation too.
 [[nodiscard]] bool noise_is_credible(const SearchContext& search,

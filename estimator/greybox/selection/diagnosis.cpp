@@ -43,6 +43,7 @@ constexpr std::size_t kBeforeLaws = 2;
 /// nearly the same, the disturbance in both decides.
 void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
   if (innovations.final.model.added.empty()) return;
+  if (loses_motion(search, innovations, disturbance_of(search, innovations))) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
   // the model without effects, with the lines that were known before the first of them
   const auto plain_round =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -22,7 +23,7 @@ using testing::UnorderedElementsAre;
 constexpr double kGain_N_per_V = 35.0;
 
 constexpr auto kSteady = [](double) { return kGain_N_per_V; };
-constexpr auto kNoRub = [](double) { return 0.0; };
+constexpr auto kNoRub = [](double, double) { return 0.0; };
 
 struct Rig {
   double mass_kg = 98.0;
@@ -32,8 +33,8 @@ struct Rig {
   double shake_m = 0.0;  ///< amplitude of the reference at 5 Hz
 };
 
-/// M v' = g(t) u - d v - F - rub(v) under a proportional controller, in steps of 0.05 ms; 2 um of
-/// noise and an encoder of 1 um.
+/// M v' = g(t) u - d v - F - rub(v, y) under a proportional controller, in steps of 0.05 ms; 2 um
+/// of noise and an encoder of 1 um.
 template <class Gain, class Rub = decltype(kNoRub)>
 config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
                                    const Rub& rub_N = kNoRub, const Rig& rig = {}) {
@@ -63,7 +64,7 @@ config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
     for (int i = 0; i < kSteps; ++i) {
       constexpr double kStep_s = kTs_s / kSteps;
       const double force_N = gain_N_per_V(t_s + kStep_s * i) * u_V - rig.damping_N_s_per_m * v_mps -
-                             load_N - rub_N(v_mps);
+                             load_N - rub_N(v_mps, y_m + 0.5 * kStep_s * v_mps);
       const double before_mps = v_mps;
       v_mps += kStep_s * force_N / rig.mass_kg;
       y_m += 0.5 * kStep_s * (before_mps + v_mps);
@@ -148,7 +149,7 @@ TEST(Axis, IsHealthyWhereAForceCarriesItFar) {
   const Rig light{12.0, 50.0, 158.0, 8.9, 0.02};
   SearchContext context =
       context_of(axis_record(
-                     kSteady, 0.0, [&](double) { return force.next_N(); }, light),
+                     kSteady, 0.0, [&](double, double) { return force.next_N(); }, light),
                  light.mass_kg);
   const Diagnosis d = diagnose(context.problem, context.options);
   EXPECT_EQ(d.verdict, Verdict::nothing_missing);
@@ -159,12 +160,32 @@ TEST(Axis, IsHealthyWhereAForceCarriesItFar) {
   EXPECT_NEAR(*better.value("damping_N_s_per_m"), light.damping_N_s_per_m, 10.0);
 }
 
+// Half of the drive's force, over waves that the motion crosses several times: between two of them
+// the smallest difference decides where a simulation goes.
+TEST(AxisRipple, IsNamedWhereNoSimulationFollowsTheMotion) {
+  const auto ripple_N = [](double, double y_m) {
+    return 15.0 * std::sin(2.0 * std::numbers::pi * y_m / 0.032 + 1.0);
+  };
+  const Rig light{12.0, 50.0, 158.0, 8.9};
+  const SearchContext context =
+      context_of(axis_record(kSteady, 0.0, ripple_N, light), light.mass_kg);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("force_ripple"));
+  EXPECT_TRUE(d.loses_motion);
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("mass_kg"), light.mass_kg, 0.01);
+  EXPECT_NEAR(*better.value("force_ripple.amplitude_N"), 15.0, 0.01);
+  EXPECT_NEAR(*better.value("force_ripple.wavelength_m"), 0.032, 1e-5);
+}
+
 // A contact that turns its sign over 0.3 or 2 mm/s; neither a spring before it slides nor a jump
 // does.
 TEST(AxisFriction, TurnsGradually) {
   for (const double transition_mps : {3e-4, 2e-3}) {
-    const SearchContext context = context_of(axis_record(
-        kSteady, 0.0, [&](double v_mps) { return 20.0 * std::tanh(v_mps / transition_mps); }));
+    const SearchContext context = context_of(axis_record(kSteady, 0.0, [&](double v_mps, double) {
+      return 20.0 * std::tanh(v_mps / transition_mps);
+    }));
     const Diagnosis d = diagnose(context.problem, context.options);
     EXPECT_EQ(d.verdict, Verdict::missing);
     EXPECT_THAT(d.missing, ElementsAre("friction"));
