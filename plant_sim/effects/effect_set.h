@@ -19,6 +19,13 @@ class EffectSet : public EffectStore<S, E...> {
   // `motion` gives the formula::Motion<S> at the instant; it is asked for only where a formula
   // acts.
 
+  /// As EffectStore::prepare().
+  void prepare(double step_s) {
+    Store::prepare(step_s);
+    half_step_s_ = 0.5 * step_s;
+    weigh_friction();
+  }
+
   /// Call exactly once per step.
   template <class Motion>
   [[nodiscard]] S command_V(S u_V, Motion&& motion) {
@@ -38,6 +45,7 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   void start(Motion&& motion) {
     if (formulas_.size() > 0) formulas_.start(motion());
+    weigh_friction();
   }
   /// Speed at the end of the last step, where a formula acts.
   [[nodiscard]] const S& held_speed_mps() const { return formulas_.held_speed_mps(); }
@@ -45,6 +53,7 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   void end_step(Motion&& motion, double step_s) {
     if (formulas_.sites() != 0) formulas_.end_step(motion(), step_s);
+    weigh_friction();
   }
 
   [[nodiscard]] S spool_limit_mps() const {
@@ -195,22 +204,29 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact, Motion&& motion) const {
     contact.drive_N -= resisting_N(y_m, contact.v_mps, motion);
+    if (friction_varies()) {  // all forces of a friction go with its level
+      contact.drive_N = contact.drive_N / friction_ratio_;
+      contact.arrest_kg_per_s = contact.arrest_kg_per_s / friction_ratio_;
+    }
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
           contact.drive_N -= T::friction_N(p, memory, contact);
         });
-    return contact.drive_N;
+    return friction_varies() ? friction_ratio_ * contact.drive_N : contact.drive_N;
   }
 
-  /// Sums over all dry frictions.
+  /// True when formulas change the level of dry friction from step to step.
+  [[nodiscard]] bool friction_varies() const { return formulas_.acts_on(Site::dry_friction); }
+
+  /// Sums over all dry frictions, in this step.
   [[nodiscard]] ContactLevels<S> contact_levels() const {
     ContactLevels<S> sum;
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
           const ContactLevels<S> one = T::levels(p);
-          sum.holding_N += one.holding_N;
-          sum.braking_N += one.braking_N;
-          sum.gradual_N += one.gradual_N;
+          sum.holding_N += friction_ratio_ * one.holding_N;
+          sum.braking_N += friction_ratio_ * one.braking_N;
+          sum.gradual_N += friction_ratio_ * one.gradual_N;
         });
     return sum;
   }
@@ -224,7 +240,7 @@ class EffectSet : public EffectStore<S, E...> {
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
           if constexpr (requires { T::slope_N_s_per_m(p, least_mps); })
-            sum += T::slope_N_s_per_m(p, least_mps);
+            sum += friction_ratio_ * T::slope_N_s_per_m(p, least_mps);
         });
     if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;
@@ -238,7 +254,9 @@ class EffectSet : public EffectStore<S, E...> {
   [[nodiscard]] S stiffness_N_per_m(const S& v_mps) const {
     return library_stiffness_N_per_m() + formulas_.stiffness_N_per_m(v_mps);
   }
-  [[nodiscard]] bool stiffness_varies() const { return formulas_.acts_on(Site::force); }
+  [[nodiscard]] bool stiffness_varies() const {
+    return formulas_.acts_on(Site::force) || friction_varies();
+  }
 
   [[nodiscard]] S reading_m(S y_m) const {
     this->template for_each_active<Site::sensor>(
@@ -265,9 +283,18 @@ class EffectSet : public EffectStore<S, E...> {
     });
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
-          if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+          if constexpr (requires { T::stiffness_N_per_m(p); })
+            sum += friction_ratio_ * T::stiffness_N_per_m(p);
         });
     return sum;
+  }
+
+  void weigh_friction() {
+    constexpr double kLeast = 1e-3;
+    friction_ratio_ =
+        friction_varies()
+            ? max(S(1.0) + formulas_.sum_ahead(Site::dry_friction, half_step_s_), S(kLeast))
+            : S(1.0);
   }
 
   /// Chains the formulas of a site behind its effects.
@@ -275,6 +302,9 @@ class EffectSet : public EffectStore<S, E...> {
   [[nodiscard]] S apply_formulas(const S& x, Motion& motion) const {
     return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x, motion()) : x;
   }
+
+  double half_step_s_ = 0.0;
+  S friction_ratio_ = 1.0;  ///< of the level of dry friction to that of its parameters, > 0
 };
 
 }  // namespace plant_sim::effects

@@ -99,6 +99,7 @@ inline constexpr std::array kFormulaSites = {
     FormulaSite{effects::Site::flow, "Q", kFlow, kFlow, true, 1e3},
     FormulaSite{effects::Site::leakage, "Q", kInPressure, kOutPressure, false, 1e3},
     FormulaSite{effects::Site::force, "F", kPosition, kSpeed, false, 1e9},
+    FormulaSite{effects::Site::dry_friction, "rise", kPosition, kSpeed, false, 1e3},
     FormulaSite{effects::Site::sensor, "reading", kPosition, kPosition, true, 1e9},
 };
 

@@ -104,9 +104,18 @@ class FormulaSet {
   /// The same in the motion at the end of the last step.
   [[nodiscard]] S chain(effects::Site site, const S& x) const { return chain(site, x, held_); }
 
-  /// Force and leakage: sum of the formulas.
+  /// Force, leakage and dry friction: sum of the formulas.
   [[nodiscard]] S sum(effects::Site site, const Motion<S>& motion) const {
     Signals<S> at = signals(motion);
+    S total = 0.0;
+    each_active(site, [&](const Effect& effect) { total += effect.contribution(at); });
+    return total;
+  }
+
+  /// The same in the motion at the end of the last step, moved on at its speed.
+  [[nodiscard]] S sum_ahead(effects::Site site, double ahead_s) const {
+    Signals<S> at = held_;
+    at[kPosition] += S(ahead_s) * held_[kSpeed];
     S total = 0.0;
     each_active(site, [&](const Effect& effect) { total += effect.contribution(at); });
     return total;

@@ -231,7 +231,8 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
                          const ModelStage& likeliest, Diagnosis& result) {
   if (!search.cancelled()) (void)find_record_differences(search, first, result);
   if (result.verdict == Verdict::unexplained && !search.cancelled()) {
-    if (!date_changes(search, first, likeliest, result) && !learn_laws(search, first, result)) {
+    if (!date_changes(search, first, likeliest, result) &&
+        !learn_laws(search, first, likeliest, result)) {
       (void)date_changes(search, first, likeliest, result, ChangesSought::after_laws);
     }
   }

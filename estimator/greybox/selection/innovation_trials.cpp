@@ -127,18 +127,17 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   screened.resize(std::min(screened.size(), kFitted));
   struct Start {
     std::size_t effect;
-    const VectorXd* theta;
+    const ParameterSubset* parameters;
     FitSummary fitted;
   };
   std::vector<Start> starts;  // all at once: some fits take many times as long as others
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    for (const VectorXd& theta : screened[i].starts) starts.push_back({i, &theta, {}});
+    for (const ParameterSubset& one : screened[i].starts) starts.push_back({i, &one, {}});
   }
   in_parallel(starts.size(), context.options.threads, [&](std::size_t k) {
     if (context.cancelled()) return;
     starts[k].fitted =
-        fit_innovations(context, {screened[starts[k].effect].parameters, *starts[k].theta},
-                        SimulationWidth{}, InnovationFit::quick);
+        fit_innovations(context, *starts[k].parameters, SimulationWidth{}, InnovationFit::quick);
   });
   std::vector<InnovationTrial> trials(screened.size());
   for (std::size_t i = 0; i < screened.size(); ++i) {

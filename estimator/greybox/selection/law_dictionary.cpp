@@ -48,6 +48,7 @@ class Dictionary {
     add_readings();
     if (choice == LawChoice::unexplained) {
       add_bent_forces();
+      add_friction_levels();
       add_saturations();
       add_leakage_along_stroke();
       add_mount();
@@ -160,6 +161,9 @@ class Dictionary {
     add("yielding_spring", "spring whose force saturates", "force",
         "force_N * tanh((y_m - rest_m) / width_m)",
         {size("force_N", force_N, Sign::positive), rest(), width("width_m", 0.5 * y)}, {"y"});
+    add("local_force", "force about a position, a bump of the guide", "force",
+        "force_N * exp(-((y_m - rest_m) / width_m)^2)",
+        {size("force_N", force_N, Sign::both), rest(), width("width_m", 0.3 * y)}, {"y"});
     add("command_damping", "damping that grows with the command", "force",
         "coefficient_N_s_per_m_V * v_mps * abs(u_V)",
         {size("coefficient_N_s_per_m_V", force_N / (v * rig_.command_V), Sign::positive)},
@@ -168,6 +172,18 @@ class Dictionary {
     add("pressure_friction", "friction of seals that grows with the pressures", "force",
         fmt::format("area_m2 * (in_Pa + out_Pa) * tanh(v_mps / {})", rounded(0.02 * v)),
         {size("area_m2", force_N / rig_.pressure_Pa, Sign::positive)}, {"v", "pressure"});
+  }
+
+  /// Beside a friction, as shares of it.
+  void add_friction_levels() {
+    const double y = rig_.length_m;
+    add("sloping_friction", "friction that changes along the stroke", "dry_friction",
+        fmt::format("slope_per_m * (y_m - {})", place_m(rig_.centre_m)),
+        {size("slope_per_m", 0.3 / y, Sign::both, 30.0)}, {"y", "direction"});
+    add("local_friction", "friction that rises about a position, a tight spot", "dry_friction",
+        "rise_ratio * exp(-((y_m - rest_m) / width_m)^2)",
+        {size("rise_ratio", 0.5, Sign::positive, 100.0), rest(), width("width_m", 0.5 * y)},
+        {"y", "direction"});
   }
 
   void add_saturations() {

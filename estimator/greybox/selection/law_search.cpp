@@ -36,6 +36,14 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site, 
   return dictionary;
 }
 
+/// True where the model has a friction or one of the effects is.
+bool rubs(const SearchContext& context, const std::vector<std::string>& effects) {
+  plant_sim::ModelFile model = context.problem.model;
+  const double* const level_N = model.value("friction.coulomb_N");
+  return (level_N != nullptr && *level_N > 0.0) ||
+         std::find(effects.begin(), effects.end(), "friction") != effects.end();
+}
+
 /// False where no law is better by kRivals_nats in the place of what was found: beside it a law is
 /// never less likely than alone, and none promises half as much there. The parameters of a single
 /// effect are counted; several with names are kept where a law is no likelier than they, inexact
@@ -50,7 +58,8 @@ bool promises(const SearchContext& search, const InnovationSearch& named) {
   const bool alone = stage.model.added.size() == 1;
   const std::vector<ScreeningResult> screened = screened_effects(stage);
   return std::any_of(screened.begin(), screened.end(), [&](const ScreeningResult& law) {
-    const std::size_t count = law.parameters.size() - with_effect;
+    if (law.starts.empty()) return false;
+    const std::size_t count = law.starts.front().parameters.size() - with_effect;
     const double saved_nats =
         own > count ? kPerParameter_nats * static_cast<double>(own - count) : 0.0;
     const double least_nats = 0.5 * kRivals_nats + (alone ? -saved_nats : named.inexact_nats);
@@ -84,7 +93,9 @@ std::optional<LawSearch> search_laws(const SearchContext& context, const ModelSt
                                      const std::string& site,
                                      const std::vector<std::string>& effects, LawChoice choice,
                                      std::size_t most_effects) {
-  const std::vector<Law> dictionary = laws_at(context, site, choice);
+  std::vector<Law> dictionary = laws_at(context, site, choice);
+  if (!rubs(context, effects))
+    std::erase_if(dictionary, [](const Law& law) { return law.effect.site == "dry_friction"; });
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
   const auto laws_of = [&](const std::vector<std::string>& added) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 #include "estimator/greybox/kinematics.h"
@@ -19,14 +20,16 @@ using plant_sim::formula::FormulaEffect;
 /// Sites and variables that are fitted, the likeliest first.
 constexpr std::size_t kTried = 2;
 constexpr std::size_t kFirstPoints = 8;
-/// The likeliest of these with other numbers of points.
-constexpr std::size_t kRefined = 1;
-constexpr std::size_t kFurtherPoints[] = {5, 14};
+/// Numbers of points of the likeliest of these, then twice as many as long as the most do best.
+constexpr std::initializer_list<std::size_t> kFurtherPoints = {5, 14};
+constexpr std::size_t kMostPoints = 28;
 /// Share of the samples beyond either end of a curve.
 constexpr double kSparse = 0.002;
 /// A force of typical size as a share of the rig's greatest; a gain's share.
 constexpr double kCurveForce = 0.03;
 constexpr double kCurveRatio = 0.1;
+/// Share by which the level of a friction changes.
+constexpr double kCurveOfFriction = 0.3;
 /// Share of what a curve has explained that others may gain beside it: between a few points it is a
 /// cubic, whatever the law.
 constexpr double kInexactCurves = 0.02;
@@ -202,6 +205,13 @@ std::vector<Attempt> first_attempts(const SearchContext& context, const Innovati
     if (std::optional<Attempt> attempt = attempt_at(context, *place, kFirstPoints))
       attempts.push_back(std::move(*attempt));
   }
+  // the score test knows no friction whose level changes: gains and drags stand in for it
+  const std::vector<std::string>& effects = stage.model.added;
+  if (std::find(effects.begin(), effects.end(), "friction") != effects.end()) {
+    const Place place{"dry_friction", "y_m", "", "y", kCurveOfFriction};
+    if (std::optional<Attempt> attempt = attempt_at(context, place, kFirstPoints))
+      attempts.push_back(std::move(*attempt));
+  }
   return attempts;
 }
 
@@ -216,20 +226,29 @@ void fit_attempts(const SearchContext& context, const InnovationStage& stage, st
   });
 }
 
+std::size_t points(const Attempt& attempt) { return attempt.effect.curve->x.size(); }
+
 /// The likeliest curve; none where no curve promises anything.
 std::optional<Attempt> likeliest(const SearchContext& context, const InnovationStage& stage) {
   std::vector<Attempt> attempts = first_attempts(context, stage);
   fit_attempts(context, stage, 0, attempts);
-  const std::size_t tried = attempts.size();
-  for (std::size_t i = 0; i < std::min(tried, kRefined); ++i) {
-    for (const std::size_t count : kFurtherPoints) {
-      const Place place = attempts[i].place;
+  if (attempts.empty()) return {};
+  const Place place = attempts.front().place;
+  const auto try_counts = [&](std::initializer_list<std::size_t> counts) {
+    const std::size_t tried = attempts.size();
+    for (const std::size_t count : counts) {
       if (std::optional<Attempt> attempt = attempt_at(context, place, count))
         attempts.push_back(std::move(*attempt));
     }
+    fit_attempts(context, stage, tried, attempts);
+  };
+  try_counts(kFurtherPoints);
+  std::size_t most = std::max(kFurtherPoints);
+  while (most < kMostPoints && !context.cancelled() && points(attempts.front()) == most) {
+    most *= 2;
+    try_counts({most});
   }
-  fit_attempts(context, stage, tried, attempts);
-  if (attempts.empty() || context.cancelled()) return {};
+  if (context.cancelled()) return {};
   return std::move(attempts.front());
 }
 

@@ -19,7 +19,7 @@ constexpr double kClearOfError = 3.0;
 
 /// How a law enters, in the words of a Localisation.
 std::string class_of(const Law& law) {
-  if (law.effect.site == "force") return "force";
+  if (law.effect.site == "force" || law.effect.site == "dry_friction") return "force";
   if (law.effect.site == "sensor") return "measurement";
   return law.effect.site == "leakage" || law.effect.site == "flow" ? "flow" : "gain";
 }
@@ -98,17 +98,27 @@ bool take_better(const SearchContext& context, const ModelStage& first,
 
 }  // namespace
 
-bool learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+bool learn_laws(const SearchContext& context, const ModelStage& first, const ModelStage& likeliest,
+                Diagnosis& result) {
   const ModelStage named = result.search.final;
-  if (take_better(context, first,
-                  search_laws(context, first, "", named.added, LawChoice::unexplained,
-                              kMostInnovationEffects),
-                  result))
+  const bool same = std::is_permutation(named.added.begin(), named.added.end(),
+                                        likeliest.added.begin(), likeliest.added.end());
+  std::vector<std::string> effects = named.added;
+  for (const std::string& name : likeliest.added) {
+    if (std::find(effects.begin(), effects.end(), name) == effects.end()) effects.push_back(name);
+  }
+  if (take_better(
+          context, first,
+          search_laws(context, first, "", effects, LawChoice::unexplained, kMostInnovationEffects),
+          result))
     return true;
   // a curve is more than a formula has to say: it comes last
   if (take_better(context, first, search_curve(context, first), result)) return true;
-  if (named.added.empty() || named.added.size() >= kStandIn) return false;
-  return take_better(context, first, search_curve(context, named), result);
+  const auto beside = [&](const ModelStage& base) {
+    return !base.added.empty() && base.added.size() < kStandIn &&
+           take_better(context, first, search_curve(context, base), result);
+  };
+  return beside(named) || (!same && beside(likeliest));
 }
 
 bool may_learn_early(const SearchContext& context, const InnovationStage& stage) {

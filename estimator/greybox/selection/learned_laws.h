@@ -7,9 +7,10 @@
 namespace estimator::greybox::selection {
 
 /// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
-/// False: `result` is as before.
+/// They stand alone or beside the effects of `result`, or of the model that the innovations chose,
+/// `likeliest`. False: `result` is as before.
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
-                              Diagnosis& result);
+                              const ModelStage& likeliest, Diagnosis& result);
 
 /// True for a single record of which a curve over the motion promises more than any change in time.
 [[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage);

@@ -52,7 +52,8 @@ std::vector<Effect> effects_of(const SearchContext& context,
     if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
     Effect effect{info.name, effect_parameters(info, kFirstRefinements), {}};
     if (is_periodic(effect.own) || is_resonant(effect.own)) continue;
-    effect.sizes = trial_sizes(effect.own, context.problem.data).rightCols(kPairSizes);
+    effect.sizes =
+        trial_sizes(effect.own, context.problem.data).leftCols(kTrialSizes).rightCols(kPairSizes);
     effects.push_back(std::move(effect));
   }
   return effects;
@@ -142,7 +143,8 @@ void look_at(const SearchContext& context, const FitDataset& data, const Project
 
 Candidate quick_fit(const SearchContext& context, const ModelStage& stage, const Couple& couple,
                     int iterations) {
-  const ScreeningResult screened{couple.first->name, 1.0, couple.parameters, couple.starts};
+  ScreeningResult screened{couple.first->name, 1.0, {}};
+  for (const VectorXd& start : couple.starts) screened.starts.push_back({couple.parameters, start});
   Candidate candidate = quick_fit(context, stage, screened, iterations);
   candidate.effects.push_back(couple.second->name);
   return candidate;

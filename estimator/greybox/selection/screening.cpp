@@ -24,10 +24,12 @@ constexpr double kFurthest = 3.0;
 constexpr std::size_t kFollowed = 4;
 /// Number of frequencies of a resonance from which fits start.
 constexpr std::size_t kFollowedPeaks = 3;
+/// Share of the scan's small resonance that one of usual size on the driven part is.
+constexpr double kUsualSwing = 5.0;
 
 struct ScoredStart {
   double cost = std::numeric_limits<double>::infinity();
-  VectorXd start;
+  ParameterSubset start;
 };
 
 /// Expansion point of a screening, and the residual there without a further effect.
@@ -46,8 +48,9 @@ std::vector<Base> bases_of(const SearchContext& context, const ModelStage& stage
 
 /// The best of several sizes of an effect from each base. All share the lanes of a simulation.
 std::vector<ScoredStart> look(DatasetSimulation& run, const Projection& projection,
-                              const std::vector<Base>& bases, const std::vector<FreeParameter>& own,
-                              const MatrixXd& sizes) {
+                              const std::vector<Base>& bases,
+                              const std::vector<FreeParameter>& parameters,
+                              const std::vector<FreeParameter>& own, const MatrixXd& sizes) {
   std::vector<ScoredStart> best(bases.size());
   MatrixXd residuals_m;
   const Index base_size = bases.front().theta.size();
@@ -74,7 +77,7 @@ std::vector<ScoredStart> look(DatasetSimulation& run, const Projection& projecti
       // wrong sign: kept as a start only when there is no better one
       const double counted = possible ? cost : std::max(cost, projection.cost());
       ScoredStart& known = best[base_of(from + lane)];
-      if (counted < known.cost) known = {counted, std::move(start)};
+      if (counted < known.cost) known = {counted, {parameters, std::move(start)}};
     }
   }
   return best;
@@ -192,24 +195,29 @@ std::vector<ScoredResonance> resonance_peaks(const SearchContext& context, const
   return peaks;
 }
 
-/// Starts at the best peaks; those that need other parameters than the best are left out.
+/// Starts at the best peaks, and with the sensor on the other side of the spring at the best, where
+/// all are of one side: a resonance that pulls the plant's parameters along seems to be on either.
 std::vector<ScoredStart> resonance_starts(const SearchContext& context, const ModelStage& stage,
                                           const Projection& projection,
-                                          const std::vector<FreeParameter>& own,
-                                          std::vector<FreeParameter>& parameters) {
+                                          const std::vector<FreeParameter>& parameters,
+                                          const std::vector<FreeParameter>& own) {
   std::vector<ScoredStart> starts;
   const std::vector<ScoredResonance> peaks =
       resonance_peaks(context, stage, projection, parameters, own);
+  const auto start_at = [&](const ScoredResonance& peak, double share) {
+    const Resonance found = resonance_of(own, peak.frequency_Hz, share, context.problem.data);
+    ParameterSubset start{stage.fitted.parameters, stage.fitted.theta};
+    append(start, {found.parameters, found.theta});
+    starts.push_back({peak.cost, std::move(start)});
+  };
+  bool both_sides = false;
   for (const ScoredResonance& peak : peaks) {
     if (starts.size() == kFollowedPeaks) break;
-    if (std::signbit(peak.share) != std::signbit(peaks.front().share)) continue;
-    const Resonance found = resonance_of(own, peak.frequency_Hz, peak.share, context.problem.data);
-    VectorXd start(stage.fitted.theta.size() + found.theta.size());
-    start << stage.fitted.theta, found.theta;
-    starts.push_back({peak.cost, std::move(start)});
-    parameters = stage.fitted.parameters;
-    parameters.insert(parameters.end(), found.parameters.begin(), found.parameters.end());
+    start_at(peak, peak.share);
+    both_sides = both_sides || std::signbit(peak.share) != std::signbit(peaks.front().share);
   }
+  if (!peaks.empty() && !both_sides)
+    start_at(peaks.front(), peaks.front().share > 0.0 ? -1.0 : kUsualSwing);
   return starts;
 }
 
@@ -218,33 +226,32 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
                               const plant_sim::EffectInfo& effect) {
   ScreeningResult result;
   result.effect = effect.name;
-  result.parameters = stage.fitted.parameters;
+  std::vector<FreeParameter> parameters = stage.fitted.parameters;
   const std::vector<FreeParameter> own = effect_parameters(effect, kFirstRefinements);
-  result.parameters.insert(result.parameters.end(), own.begin(), own.end());
+  parameters.insert(parameters.end(), own.begin(), own.end());
   const auto own_size = static_cast<Index>(own.size());
   std::vector<ScoredStart> starts;
   if (is_periodic(own)) {
-    std::vector<Wave> found = scanned(context, stage, projection, result.parameters, own);
+    std::vector<Wave> found = scanned(context, stage, projection, parameters, own);
     if (!found.empty()) {
       VectorXd start(stage.fitted.theta.size() + own_size);
       start << stage.fitted.theta, found.front().own;
       const auto first = static_cast<std::ptrdiff_t>(stage.fitted.parameters.size());
-      hold_wavelength(effect, found.front().own,
-                      {result.parameters.begin() + first, result.parameters.end()});
-      starts.push_back({found.front().cost, std::move(start)});
+      hold_wavelength(effect, found.front().own, {parameters.begin() + first, parameters.end()});
+      starts.push_back({found.front().cost, {parameters, std::move(start)}});
     }
   } else if (is_resonant(own)) {
-    starts = resonance_starts(context, stage, projection, own, result.parameters);
+    starts = resonance_starts(context, stage, projection, parameters, own);
   } else {
     const MatrixXd sizes = trial_sizes(own, context.problem.data, context.problem.trial_sizes);
-    DatasetSimulation run(context.problem.model, context.problem.data, result.parameters);
-    starts = look(run, projection, bases, own, sizes);
+    DatasetSimulation run(context.problem.model, context.problem.data, parameters);
+    starts = look(run, projection, bases, parameters, own, sizes);
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const ScoredStart& a, const ScoredStart& b) { return a.cost < b.cost; });
   double least = projection.cost();
   for (ScoredStart& scored : starts) {
-    if (scored.start.size() == 0) continue;
+    if (scored.start.parameters.empty()) continue;
     least = std::min(least, scored.cost);
     result.starts.push_back(std::move(scored.start));
   }
@@ -286,10 +293,10 @@ RefinedCandidate refine(const SearchContext& context, const ScreeningResult& scr
   RefinedCandidate best;
   best.effect = screened.effect;
   best.fitted.training_rms_m = std::numeric_limits<double>::infinity();
-  for (const VectorXd& start : screened.starts) {
+  for (const ParameterSubset& start : screened.starts) {
     FitSummary fitted =
         fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
-            screened.parameters, start, options);
+            start.parameters, start.start, options);
     if (fitted.training_rms_m < best.fitted.training_rms_m) best.fitted = std::move(fitted);
     if (context.cancelled()) break;
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "estimator/greybox/fit.h"
+#include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/problem.h"
 
 namespace estimator::greybox::selection {
@@ -34,8 +35,9 @@ struct ScreeningResult {
   /// Root of the cost expected with the effect, squares and priors, over the stage's: that of the
   /// errors where no parameter is strained; 1 = no gain.
   double expected_ratio = 1.0;
-  std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
-  std::vector<Eigen::VectorXd> starts;    ///< starting points, most promising first
+  /// The stage's parameters, then the effect's, at starting points, most promising first. A second
+  /// mass frees others where the sensor is behind its spring.
+  std::vector<ParameterSubset> starts;
 };
 
 /// Screens each effect, most promising first, from the stage's parameters and from the model

@@ -298,12 +298,10 @@ std::vector<Candidate> pair_round(const SearchContext& context, const Round& sin
     if (context.cancelled() || !first.fitted_at_all || !second.fitted_at_all) return;
     ScreeningResult screened;
     screened.effect = first.effects.front();
-    screened.parameters = first.fitted.parameters;
-    screened.parameters.insert(screened.parameters.end(), second.fitted.parameters.begin() + base,
-                               second.fitted.parameters.end());
-    VectorXd start(static_cast<Index>(screened.parameters.size()));
-    start << first.fitted.theta, second.fitted.theta.tail(second.fitted.theta.size() - base);
-    screened.starts = {start};
+    ParameterSubset start{first.fitted.parameters, first.fitted.theta};
+    append(start, {{second.fitted.parameters.begin() + base, second.fitted.parameters.end()},
+                   second.fitted.theta.tail(second.fitted.theta.size() - base)});
+    screened.starts = {std::move(start)};
     candidates[i] = quick_fit(context, singles.before, screened);
     candidates[i].effects.push_back(second.effects.front());
   });

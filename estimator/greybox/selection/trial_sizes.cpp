@@ -26,6 +26,10 @@ constexpr double kNeighbourhood = 1.05;
 constexpr double kSteepestReading = 0.3;
 constexpr double kTurnStep = 0.5;  ///< step between neighbouring wavelengths
 
+/// Places over the motion at which a law of one place is tried, and the width that it has there.
+constexpr int kPlaces = 10;
+constexpr double kWidthOfPlace = 0.6;
+
 /// Resonances: from a few periods in the record to well below half the sample rate.
 constexpr double kLeastResonance_Hz = 1.0;
 constexpr double kFewestPeriods = 10.0;
@@ -88,6 +92,28 @@ Index index_of(const std::vector<FreeParameter>& parameters, const std::string& 
   return -1;
 }
 
+/// Further columns for a law of one place: at places all over the motion.
+MatrixXd at_places(const std::vector<FreeParameter>& parameters, const PositionRange& span,
+                   const MatrixXd& points) {
+  const Index rest = index_of(parameters, ".rest_m");
+  const Index width = index_of(parameters, ".width_m");
+  if (rest < 0 || width < 0) return points;
+  const FreeParameter& place = parameters[static_cast<std::size_t>(rest)];
+  const FreeParameter& wide = parameters[static_cast<std::size_t>(width)];
+  const double step_m = (span.most_m - span.least_m) / kPlaces;
+  MatrixXd all(points.rows(), (kPlaces + 1) * points.cols());
+  all.leftCols(points.cols()) = points;
+  for (int i = 0; i < kPlaces; ++i) {
+    auto here = all.middleCols((i + 1) * points.cols(), points.cols());
+    here = points;
+    here.row(rest).setConstant(
+        std::clamp(place.to_theta(span.least_m + (i + 0.5) * step_m), place.lower, place.upper));
+    here.row(width).setConstant(
+        std::clamp(wide.to_theta(kWidthOfPlace * step_m), wide.lower, wide.upper));
+  }
+  return all;
+}
+
 }  // namespace
 
 MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitDataset& data,
@@ -109,7 +135,7 @@ MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitData
     points.col(k) = typical;
     scale_size(parameters, size, points.col(k));
   }
-  return points;
+  return at_places(parameters, span, points);
 }
 
 bool is_periodic(const std::vector<FreeParameter>& parameters) {

@@ -14,7 +14,8 @@ namespace estimator::greybox::selection {
 
 /// Columns of search values (searched.size() rows). The first parameter takes sizes over decades,
 /// with both signs where allowed; parameters in the same unit scale with it; rest positions lie
-/// within the motion. `count`: kTrialSizes, or half as many in wider steps.
+/// within the motion. `count`: kTrialSizes, or half as many in wider steps. A law with a rest
+/// position and a width has further columns at places all over the motion.
 [[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters,
                                           const FitDataset& data, Eigen::Index count = kTrialSizes);
 

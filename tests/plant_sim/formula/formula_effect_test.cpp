@@ -1,9 +1,11 @@
 // Formula effects in the plants: they do what an effect of the library with the same equation does,
 // in a single run and in lanes, and nothing when neutral.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "plant_sim/library.h"
 #include "plant_sim/plant.h"
@@ -67,6 +69,54 @@ TEST(FormulaEffect, DoesWhatTheEffectOfTheLibraryWithTheSameEquationDoes) {
     }
     EXPECT_GT(influence_m, 1e-5) << twin.formula;
   }
+}
+
+// Levels, springs and damping of a contact go with its friction: half as much again is that of
+// parameters half as large again.
+TEST(FormulaEffect, RaisesDryFrictionAsAWhole) {
+  const auto friction = [](double ratio, double spring, double transition_mps) {
+    return fmt::format(
+        "[effects.friction]\ncoulomb_N = {}\nstatic_N = {}\nstribeck_mps = 0.01\n"
+        "presliding_stiffness_N_per_m = {}\npresliding_damping_N_s_per_m = {}\n"
+        "transition_mps = {}\n",
+        60.0 * ratio, 75.0 * ratio, 2e5 * ratio * spring, 300.0 * ratio * spring, transition_mps);
+  };
+  for (const char* name : {"force_driven_axis", "hydraulic_actuator", "hydraulic_cylinder"}) {
+    for (const auto& [spring, transition_mps] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 2e-3}}) {
+      const std::string head = plant_text(name);
+      auto own =
+          make_plant(model_of(head + own_text("dry_friction", "k", "-1e6", "1e6") +
+                              "[effects.own]\nk = 0.5\n" + friction(1.0, spring, transition_mps)));
+      auto library = make_plant(model_of(head + friction(1.5, spring, transition_mps)));
+      auto without = make_plant(model_of(head + friction(1.0, spring, transition_mps)));
+      double influence_m = 0.0;
+      for (int k = 0; k < 600; ++k) {
+        for (const auto& plant : {&own, &library, &without}) {
+          (*plant)->advance(drive_V(k, 4.0), 0.005);
+        }
+        ASSERT_NEAR(own->reading_m(), library->reading_m(), 1e-7)
+            << name << " at " << k << ", spring " << spring << ", transition " << transition_mps;
+        influence_m = std::max(influence_m, std::abs(own->reading_m() - without->reading_m()));
+      }
+      EXPECT_GT(influence_m, 1e-5) << name;
+    }
+  }
+}
+
+// m y'' = F - Fc (1 + k y) swings by y = a (1 - cos w t), a = (F - Fc) / (Fc k), w^2 = Fc k / m, up
+// to 2 a, where the friction holds it.
+TEST(FormulaEffect, RaisesDryFrictionAlongTheStroke) {
+  auto plant = make_plant(model_of(
+      plant_text("force_driven_axis") + "[parameters]\nmass_kg = 50.0\ndamping_N_s_per_m = 0.0\n" +
+      own_text("dry_friction", "k*y_m", "0.0", "100.0") +
+      "[effects.own]\nk = 5.0\n[effects.friction]\ncoulomb_N = 70.0\n"));
+  const double swing_m = 35.0 / (70.0 * 5.0);
+  const double rate_per_s = std::sqrt(70.0 * 5.0 / 50.0);
+  plant->advance(3.0, 0.8);
+  EXPECT_NEAR(plant->reading_m(), swing_m * (1.0 - std::cos(0.8 * rate_per_s)), 2e-5);
+  plant->advance(3.0, 2.0);
+  EXPECT_NEAR(plant->reading_m(), 2.0 * swing_m, 1e-4);
+  EXPECT_LT(std::abs(plant->speed_mps()), 1e-8);
 }
 
 TEST(FormulaEffect, FollowsTheClosedFormOfASteadyState) {

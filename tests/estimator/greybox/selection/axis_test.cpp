@@ -196,6 +196,37 @@ TEST(AxisFriction, TurnsGradually) {
   }
 }
 
+// No effect of the library: a law beside the friction, at the level of it.
+TEST(LongAxisFriction, ChangesAlongTheStroke) {
+  const auto rub_N = [](double v_mps, double y_m) {
+    return 20.0 * (1.0 + 4.0 * y_m) * std::tanh(v_mps / 3e-4);
+  };
+  const SearchContext context = context_of(axis_record(kSteady, 0.0, rub_N));
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  ASSERT_THAT(d.laws, SizeIs(1));
+  EXPECT_EQ(d.laws.front().effect.name, "sloping_friction");
+  EXPECT_LT(d.rms_after_m, 1.2 * d.noise_floor_m);
+  EXPECT_EQ(d.where.front().site, "force");
+  EXPECT_EQ(d.where.front().variable, "y");
+}
+
+// A tight spot that the motion passes in a tenth of its way.
+TEST(LongAxisFriction, RisesAtATightSpot) {
+  const auto rub_N = [](double v_mps, double y_m) {
+    const double apart = (y_m - 0.03) / 0.008;
+    return (12.0 + 25.0 * std::exp(-apart * apart)) * std::tanh(v_mps / 3e-4);
+  };
+  const SearchContext context = context_of(axis_record(kSteady, 0.0, rub_N));
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  ASSERT_THAT(d.laws, SizeIs(1));
+  EXPECT_EQ(d.laws.front().effect.name, "local_friction");
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("local_friction.rest_m"), 0.03, 2e-4);
+  EXPECT_NEAR(*better.value("local_friction.width_m"), 0.008, 2e-4);
+}
+
 // An offset and a load are one on an axis, also where an error remains.
 TEST(AxisGain, ThatIsNotSoughtLeavesOffsetAndLoadRivals) {
   SearchContext context = axis_context(fades, 18.0);

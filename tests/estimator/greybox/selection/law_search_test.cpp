@@ -205,10 +205,10 @@ TEST(LongLaws, ALawThatLeavesADisturbanceNeedNotLeaveLessThanWhatIsUnexplained) 
   unexplained.search.final = first;
   unexplained.rms_after_m = 1.0;
   Diagnosis learned = unexplained;
-  ASSERT_TRUE(learn_laws(context, first, learned));
+  ASSERT_TRUE(learn_laws(context, first, first, learned));
   ASSERT_TRUE(learned.disturbance);
   unexplained.rms_after_m = 0.99 * learned.rms_after_m;
-  EXPECT_TRUE(learn_laws(context, first, unexplained));
+  EXPECT_TRUE(learn_laws(context, first, first, unexplained));
   EXPECT_THAT(names_of(unexplained.laws), ElementsAre("cubic_damping"));
 }
 

@@ -33,8 +33,9 @@ TEST(Glances, BeginTheFitOnTheSideOfTheTruth) {
   const SearchContext context = servo_context({.rate_mps = with_offset(-0.06)});
   const ModelStage stage = first_stage(context);
   const ScreeningResult look = screen(context, stage, context.problem.candidate_effects).front();
-  ASSERT_EQ(look.parameters.back().name, "null_bias.offset_V");
-  const double start_V = look.parameters.back().to_physical(look.starts.front().tail(1)[0]);
+  const ParameterSubset& start = look.starts.front();
+  ASSERT_EQ(start.parameters.back().name, "null_bias.offset_V");
+  const double start_V = start.parameters.back().to_physical(start.start.tail(1)[0]);
   EXPECT_LT(start_V, 0.0);
   EXPECT_NEAR(refine(context, look, {}).fitted.value("null_bias.offset_V"), -0.06, 3e-4);
 }
