@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
@@ -143,8 +144,17 @@ std::string words_to_locate(const selection::Localisation& where, bool axis) {
       measured.push_back(words);
     }
   }
+  const auto is_in_another = [&](const std::string& one) {
+    const std::string what = one.substr(one.find(' '));
+    return std::any_of(measured.begin(), measured.end(), [&](const std::string& other) {
+      return other != one && other.find(what) != std::string::npos;
+    });
+  };
+  std::vector<std::string> each;
+  std::copy_if(measured.begin(), measured.end(), std::back_inserter(each),
+               [&](const std::string& one) { return !is_in_another(one); });
   return std::string("For an error that goes ") + of(kVariables, where.variable) +
-         " and may enter in several places: " + config::schema::joined(measured, "; ") + ".";
+         " and may enter in several places: " + config::schema::joined(each, "; ") + ".";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/place_words.h"
 #include "workbench/diagnose/record_words.h"
+#include "workbench/diagnose/rival_words.h"
 #include "workbench/present/disturbance_words.h"
 #include "workbench/present/dynamics_plots.h"
 #include "workbench/present/shell_command.h"
@@ -37,12 +38,6 @@ std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
 std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
   const auto text = [&](const std::string& effect) { return effect_words(d, effect); };
   return config::schema::joined_by(effects, text, "; ");
-}
-
-/// "a or b; c or d".
-std::string groups_words(const selection::Diagnosis& d) {
-  const auto text = [](const auto& group) { return config::schema::listed(group, "or"); };
-  return config::schema::joined_by(d.ambiguous, text, "; ");
 }
 
 /// The established effects that no rival disputes.
@@ -189,22 +184,6 @@ std::string fall_words(const selection::Diagnosis& d) {
          config::units::length_words(d.floor_m()) + ".";
 }
 
-void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
-  if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
-    out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
-  }
-  for (const auto& group : d.same_here) {
-    if (!d.rests_on_one_of(group)) continue;
-    out.push_back("On this plant no motion that was tried tells " + config::schema::listed(group) +
-                  " apart: the name is a choice.");
-  }
-  for (const std::string& name : d.established()) {
-    if (name != "drive_lag" && name != "transport_delay") continue;
-    out.push_back("A lag of the position sensor, such as its filter's, acts as " + name +
-                  " does: a second sensor would tell.");
-  }
-}
-
 }  // namespace
 
 std::string file_name(const std::string& file) { return file.substr(file.find_last_of('/') + 1); }
@@ -313,7 +292,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   for (const selection::RefusedModel& model : d.search.refused) {
     out.push_back(refused_words(model, d.missing));
   }
-  add_rivals(d, out);
+  for (std::string& text : rival_words(d)) out.push_back(std::move(text));
   const std::string held = held_words(outcome);
   if (!held.empty()) out.push_back(held);
   if (!d.where.empty()) out.push_back(place_words(d));

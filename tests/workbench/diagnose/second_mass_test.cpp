@@ -2,8 +2,13 @@
 // with its frequency, and not named where there is none.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <set>
+#include <vector>
+
 #include "config/schema/document.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/screening.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/two_masses.h"
@@ -26,13 +31,16 @@ plant_sim::ModelFile rigid() {
   return model;
 }
 
-selection::Diagnosis diagnosed_masses(const two_masses::Rig& rig) {
+selection::SearchContext context_of(const two_masses::Rig& rig) {
   config::record::Record record = two_masses::record(rig);
   record.name = "two masses";
   record.sample_time_s = 1.0 / rig.sample_rate_Hz;
-  return diagnose_test::found_in(selection::SearchContext{
-      selection::make_problem(rigid(), greybox::fit_dataset({greybox::dataset_of(record)}, {})),
-      {}});
+  return {selection::make_problem(rigid(), greybox::fit_dataset({greybox::dataset_of(record)}, {})),
+          {}};
+}
+
+selection::Diagnosis diagnosed_masses(const two_masses::Rig& rig) {
+  return diagnose_test::found_in(context_of(rig));
 }
 
 const selection::ParameterValue& value(const selection::Diagnosis& d, const std::string& name) {
@@ -64,6 +72,23 @@ TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt34Hz) { expect_named({.seed = 3}
 
 TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt8HzAnd500HzSampling) {
   expect_named({.resonance_Hz = 8.0, .sample_rate_Hz = 500.0, .seed = 4});
+}
+
+// The plant's parameters follow a resonance some way: which side the sensor is on shows in a fit.
+TEST(HiddenSecondMass, IsTriedWithTheSensorOnEitherSideOfItsSpring) {
+  for (const bool at_load : {false, true}) {
+    const selection::SearchContext context =
+        context_of({.at_load = at_load, .duration_s = 4.0, .seed = 8});
+    const std::vector<selection::ScreeningResult> screened = selection::screen(
+        context, selection::first_stage(context), {*plant_sim::find_effect("second_mass")});
+    ASSERT_THAT(screened, testing::SizeIs(1));
+    std::set<bool> sides;
+    for (const selection::ParameterSubset& start : screened.front().starts) {
+      sides.insert(std::any_of(start.parameters.begin(), start.parameters.end(),
+                               [](const auto& p) { return p.name == "second_mass.sensor_ratio"; }));
+    }
+    EXPECT_THAT(sides, testing::SizeIs(2)) << at_load;
+  }
 }
 
 TEST(HiddenSecondMass, IsNotFoundInARigidAxisNorInADelayedOneNorInASpring) {

@@ -1,0 +1,67 @@
+// What else would explain a record, in sentences.
+#include "workbench/diagnose/rival_words.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "plant_sim/model_file.h"
+#include "tests/workbench/diagnose/example_outcome.h"
+#include "workbench/diagnose/words.h"
+
+namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+selection::Diagnosis found(const std::string& effect) {
+  selection::Diagnosis d;
+  d.verdict = selection::Verdict::missing;
+  d.missing = {effect};
+  return d;
+}
+
+TEST(RivalWords, TellOfASensorsLagBesideALagOfTheDrive) {
+  const auto says = HasSubstr("A lag of the position sensor");
+  EXPECT_THAT(rival_words(found("drive_lag")), ElementsAre(says));
+  EXPECT_THAT(rival_words(found("transport_delay")), ElementsAre(says));
+  EXPECT_THAT(rival_words(found("friction")), IsEmpty());
+}
+
+// 8 bar on 10 cm2 more of the one side
+TEST(RivalWords, TellOfAReturnPressureThatIsTheForceFound) {
+  selection::Diagnosis d = found("load_force");
+  d.better = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                   "/config/models/single_rod_cylinder.toml");
+  *d.better.value("cap_area_m2") = 3e-3;
+  *d.better.value("rod_side_area_m2") = 2e-3;
+  *d.better.value("return_pressure_Pa") = 0.0;
+  *d.better.value("load_force.force_N") = -800.0;
+  EXPECT_THAT(rival_words(d), ElementsAre(HasSubstr("at 8 bar it would be the same force")));
+  selection::ParameterValue fitted;
+  fitted.name = "return_pressure_Pa";
+  d.parameters = {fitted};
+  EXPECT_THAT(rival_words(d), IsEmpty()) << "it is fitted beside the force";
+  d.parameters.clear();
+  *d.better.value("load_force.force_N") = 800.0;
+  EXPECT_THAT(rival_words(d), IsEmpty()) << "no pressure is below none";
+}
+
+TEST(RivalWords, StandAmongTheRemarks) {
+  ExampleReport outcome;
+  outcome.diagnosis.missing.emplace_back("drive_lag");
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("A lag of the position sensor")));
+  const auto amplifies = HasSubstr("The rig amplifies the smallest differences");
+  EXPECT_THAT(remarks(outcome), Not(Contains(amplifies)));
+  outcome.diagnosis.loses_motion = true;
+  EXPECT_THAT(remarks(outcome), Contains(amplifies));
+}
+
+}  // namespace
+}  // namespace workbench::diagnose
