@@ -131,9 +131,9 @@ class ForceDrivenAxis {
       free_N -= parameters.damping_N_s_per_m * v_mps +
                 effects.resisting_N(state.y_m, v_mps, [&] { return motion(state, drive_V); });
     }
-    const S change_mps = S(2.0 * step_s_) * (abs(free_N) + contact_.gradual_N) * inverse_mass_;
-    const S slope = parameters.damping_N_s_per_m +
-                    effects.slope_N_s_per_m(v_mps, max(abs(v_mps) - change_mps, S(0.0)));
+    const S step_per_kg = S(step_s_) * inverse_mass_;
+    const S least_mps = least_speed_mps(v_mps, free_N, contact_, step_per_kg);
+    const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(v_mps, least_mps);
     S fastest = max(slope * inverse_mass_, spring_rate_);
     if (effects.stiffness_varies()) {
       const S stiffness = effects.stiffness_N_per_m(v_mps);
@@ -142,7 +142,7 @@ class ForceDrivenAxis {
     const S parts =
         clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
     if (!rubs_) return parts;
-    const auto turns = turns_within(v_mps, free_N, contact_, S(step_s_) * inverse_mass_);
+    const auto turns = turns_within(v_mps, free_N, contact_, step_per_kg);
     return max(parts, select(turns, S(kTurnDivisions), S(1.0)));
   }
 

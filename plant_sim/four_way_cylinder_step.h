@@ -143,8 +143,8 @@ S FourWayCylinder<S, Design>::free_N() const {
 /// The slowest that the rod can become within the step.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::slow_mps(const S& free_N) const {
-  const S change_mps = S(2.0 * derived_.step_s) * (abs(free_N) + derived_.contact.gradual_N);
-  return max(abs(state.v_mps) - change_mps * derived_.inverse_mass, S(0.0));
+  return least_speed_mps(state.v_mps, free_N, derived_.contact,
+                         S(derived_.step_s) * derived_.inverse_mass);
 }
 
 /// Mask of the lanes in which the whole step reaches no limit.

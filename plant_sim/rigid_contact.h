@@ -10,17 +10,38 @@ namespace plant_sim {
 /// Parts of such a step.
 inline constexpr double kTurnDivisions = 16.0;
 
-/// Mask of the lanes in which the contact may turn within a step. `free_N`: the sum of all other
-/// forces; `step_per_kg`: step over mass.
+/// Change of forces within a step, over what they are or add up to.
+inline constexpr double kTurnMargin = 2.0;
+
+/// Speed along the motion, m/s, at the end of a step that friction brakes with `braking_N`, at
+/// least: below 0 it has turned. `free_N`: the sum of all other forces; `step_per_kg`: step over
+/// mass.
+template <class S>
+S end_speed_mps(const S& v_mps, const S& free_N, const S& braking_N, const S& step_per_kg) {
+  const S along_N = select(v_mps < S(0.0), -free_N, free_N) - braking_N;
+  return abs(v_mps) + S(kTurnMargin) * step_per_kg * along_N;
+}
+
+/// The least speed, m/s, within a step of a contact that turns gradually.
+template <class S>
+S least_speed_mps(const S& v_mps, const S& free_N, const effects::ContactLevels<S>& contact,
+                  const S& step_per_kg) {
+  constexpr double kUnsteady = 0.1;  // share by which forces that cancel may fail to
+  const S unsteady_N = S(kUnsteady) * (abs(free_N) + contact.gradual_N);
+  const S end_mps = end_speed_mps(v_mps, free_N, contact.gradual_N, step_per_kg);
+  const S slower_mps = abs(v_mps) - S(kTurnMargin) * step_per_kg * unsteady_N;
+  return max(min(end_mps, slower_mps), S(0.0));
+}
+
+/// Mask of the lanes in which the contact may turn within a step.
 template <class S>
 auto turns_within(const S& v_mps, const S& free_N, const effects::ContactLevels<S>& contact,
                   const S& step_per_kg) {
   constexpr double kRest_mps = 1e-9;  // a rod that is held creeps no faster
-  constexpr double kMargin = 2.0;     // forces change within the step, which may hold ahead
-  const S along_N = select(v_mps < S(0.0), -free_N, free_N) - contact.braking_N;
-  const S ends_mps = abs(v_mps) + S(kMargin) * step_per_kg * along_N;
+  constexpr double kNearlyLoose = 1.25;
+  const S ends_mps = end_speed_mps(v_mps, free_N, contact.braking_N, step_per_kg);
   const auto resting = abs(v_mps) <= S(kRest_mps);
-  const S lets_go = select(abs(free_N) * S(kMargin) >= contact.holding_N, S(1.0), S(0.0));
+  const S lets_go = select(abs(free_N) * S(kNearlyLoose) >= contact.holding_N, S(1.0), S(0.0));
   const S turns = select(resting, lets_go, select(ends_mps <= S(0.0), S(1.0), S(0.0)));
   return (contact.braking_N > S(0.0)) & (turns > S(0.0));
 }

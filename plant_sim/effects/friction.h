@@ -157,7 +157,7 @@ struct Friction {
   }
 
   static constexpr double kResolvedRate = 2.0;        ///< times a part of a step: RK4 follows that
-  static constexpr double kFiner = 4.0;               ///< the curve bends within a transition
+  static constexpr double kFiner = 2.0;               ///< the curve bends within a transition
   static constexpr double kTransitions = 4.0;         ///< tanh beyond has a slope under 0.2 %
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
   static constexpr double kNoRise = 700.0;            ///< e^-700 is still a normal number
