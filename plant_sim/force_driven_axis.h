@@ -103,7 +103,10 @@ class ForceDrivenAxis {
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V) {
     const S known_V = limits::known_V(u_V);
-    if (effects.friction_varies()) contact_ = effects.contact_levels();
+    if (effects.friction_varies()) {
+      effects.weigh_friction([&] { return motion(state, known_V); });
+      contact_ = effects.contact_levels();
+    }
     const S drive_V =
         effects.drive_V(effects.command_V(known_V, [&] { return motion(state, known_V); }));
     const S parts = divisions(drive_V);

@@ -213,7 +213,10 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   drive_V_ = limits::known_V(u_V);
   drive_V_ = effects.command_V(drive_V_, [&] { return motion(state); });
   const S drive_V = drive_V_;
-  if (effects.friction_varies()) derived_.contact = effects.contact_levels();
+  if (effects.friction_varies()) {
+    effects.weigh_friction([&] { return motion(state); });
+    derived_.contact = effects.contact_levels();
+  }
   const auto whole = ordinary(drive_V);
   S turned = 1.0;
   if (derived_.brakes) {

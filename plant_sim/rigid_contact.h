@@ -13,9 +13,9 @@ inline constexpr double kTurnDivisions = 16.0;
 /// Change of forces within a step, over what they are or add up to.
 inline constexpr double kTurnMargin = 2.0;
 
-/// Speed along the motion, m/s, at the end of a step that friction brakes with `braking_N`, at
-/// least: below 0 it has turned. `free_N`: the sum of all other forces; `step_per_kg`: step over
-/// mass.
+/// Speed along the motion, m/s, at the end of a step that friction brakes with `braking_N`, its
+/// change doubled: below 0 it may turn. `free_N`: the sum of all other forces; `step_per_kg`: step
+/// over mass.
 template <class S>
 S end_speed_mps(const S& v_mps, const S& free_N, const S& braking_N, const S& step_per_kg) {
   const S along_N = select(v_mps < S(0.0), -free_N, free_N) - braking_N;

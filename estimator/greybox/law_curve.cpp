@@ -94,6 +94,8 @@ const char* quantity_of(const plant_sim::ModelFile& model, plant_sim::effects::S
       return "leakage_m3ps";
     case Site::force:
       return "force_N";
+    case Site::dry_friction:
+      return "friction_ratio";
     default:
       return "reading_m";
   }

@@ -22,8 +22,18 @@ class EffectSet : public EffectStore<S, E...> {
   /// As EffectStore::prepare().
   void prepare(double step_s) {
     Store::prepare(step_s);
+    friction_ratio_ = 1.0;
     half_step_s_ = 0.5 * step_s;
-    weigh_friction();
+  }
+
+  /// Call at the beginning of every step where friction_varies(): the level of dry friction is that
+  /// of the step's middle.
+  template <class Motion>
+  void weigh_friction(Motion&& motion) {
+    constexpr double kLeast = 1e-3;
+    formula::Motion<S> at = motion();
+    at.y_m += S(half_step_s_) * at.v_mps;
+    friction_ratio_ = max(S(1.0) + formulas_.sum(Site::dry_friction, at), S(kLeast));
   }
 
   /// Call exactly once per step.
@@ -45,7 +55,6 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   void start(Motion&& motion) {
     if (formulas_.size() > 0) formulas_.start(motion());
-    weigh_friction();
   }
   /// Speed at the end of the last step, where a formula acts.
   [[nodiscard]] const S& held_speed_mps() const { return formulas_.held_speed_mps(); }
@@ -53,7 +62,6 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   void end_step(Motion&& motion, double step_s) {
     if (formulas_.sites() != 0) formulas_.end_step(motion(), step_s);
-    weigh_friction();
   }
 
   [[nodiscard]] S spool_limit_mps() const {
@@ -287,14 +295,6 @@ class EffectSet : public EffectStore<S, E...> {
             sum += friction_ratio_ * T::stiffness_N_per_m(p);
         });
     return sum;
-  }
-
-  void weigh_friction() {
-    constexpr double kLeast = 1e-3;
-    friction_ratio_ =
-        friction_varies()
-            ? max(S(1.0) + formulas_.sum_ahead(Site::dry_friction, half_step_s_), S(kLeast))
-            : S(1.0);
   }
 
   /// Chains the formulas of a site behind its effects.

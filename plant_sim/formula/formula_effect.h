@@ -22,6 +22,7 @@
 //   flow      the flow of one orifice, m3/s            q_m3ps
 //   leakage   what leaks from chamber i to o, m3/s     in_Pa, out_Pa
 //   force     a force against extension, N             y_m, v_mps
+//   dry_friction  rise of all dry friction, a share    y_m, v_mps
 //   sensor    what the position sensor shows, m        y_m
 // and from the plant's other signals (signals.h). It acts after the library's effects of its site,
 // in the order of declaration. With one line more it has a memory z, which starts at 0:

@@ -112,15 +112,6 @@ class FormulaSet {
     return total;
   }
 
-  /// The same in the motion at the end of the last step, moved on at its speed.
-  [[nodiscard]] S sum_ahead(effects::Site site, double ahead_s) const {
-    Signals<S> at = held_;
-    at[kPosition] += S(ahead_s) * held_[kSpeed];
-    S total = 0.0;
-    each_active(site, [&](const Effect& effect) { total += effect.contribution(at); });
-    return total;
-  }
-
   /// The largest |dF/dv| at any speed up to |v_mps|, estimated.
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S total = 0.0;

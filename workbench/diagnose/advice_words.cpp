@@ -144,15 +144,17 @@ std::string words_to_locate(const selection::Localisation& where, bool axis) {
       measured.push_back(words);
     }
   }
-  const auto is_in_another = [&](const std::string& one) {
-    const std::string what = one.substr(one.find(' '));
+  // "A or B" beside "A" asks for A
+  const auto is_met_by_another = [&](const std::string& one) {
     return std::any_of(measured.begin(), measured.end(), [&](const std::string& other) {
-      return other != one && other.find(what) != std::string::npos;
+      const std::size_t what = other.find(' ');
+      return other != one && what != std::string::npos &&
+             one.find(other.substr(what)) != std::string::npos;
     });
   };
   std::vector<std::string> each;
   std::copy_if(measured.begin(), measured.end(), std::back_inserter(each),
-               [&](const std::string& one) { return !is_in_another(one); });
+               [&](const std::string& one) { return !is_met_by_another(one); });
   return std::string("For an error that goes ") + of(kVariables, where.variable) +
          " and may enter in several places: " + config::schema::joined(each, "; ") + ".";
 }

@@ -198,7 +198,11 @@ bool loses_motion(const SearchContext& search, const InnovationSearch& innovatio
                   const std::optional<Disturbance>& disturbance) {
   const FitDataset& data = search.problem.data;
   const double motion_m = motion_rms_m(data);
-  if (!disturbance || !(disturbance->rms_m > kCarriedAway * motion_m)) return false;
+  // lines are no small difference, and the random part is 0 where they are all that is seen
+  if (!disturbance || !disturbance->lines.empty() || !(disturbance->value > 0.0) ||
+      !(disturbance->rms_m > kCarriedAway * motion_m)) {
+    return false;
+  }
   if (disturbance->as == "reading") {
     return disturbance->value * std::sqrt(length_s(data)) < kNextToNothing * motion_m;
   }

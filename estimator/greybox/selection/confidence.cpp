@@ -298,6 +298,14 @@ void weigh_doubts(Diagnosis& diagnosis) {
   if (diagnosis.verdict == Verdict::missing && diagnosis.established().empty()) {
     diagnosis.verdict = Verdict::undetermined;
   }
+  const auto is_doubted = [&](const Law& law) {
+    return std::any_of(diagnosis.possible.begin(), diagnosis.possible.end(),
+                       [&](const PossibleEffect& one) { return one.effect == law.effect.name; });
+  };
+  if (diagnosis.verdict == Verdict::learned &&
+      std::any_of(diagnosis.laws.begin(), diagnosis.laws.end(), is_doubted)) {
+    diagnosis.verdict = Verdict::unexplained;
+  }
 }
 
 }  // namespace estimator::greybox::selection

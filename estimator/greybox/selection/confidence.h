@@ -45,7 +45,8 @@ struct PossibleEffect {
 /// Effects of `missing` that are not established; parameters and verdict must be set.
 [[nodiscard]] std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis);
 
-/// Sets `possible`. Where no effect of the verdict `missing` is established it is `undetermined`.
+/// Sets `possible`. Where no effect of the verdict `missing` is established it is `undetermined`;
+/// where a law of the verdict `learned` is not, it is `unexplained`.
 void weigh_doubts(Diagnosis& diagnosis);
 
 }  // namespace estimator::greybox::selection

@@ -80,7 +80,7 @@ class Dictionary {
   [[nodiscard]] FormulaEffect::Parameter rest() const {
     const double reach_m = 10.0 * rig_.length_m;
     return {"rest_m",
-            "position at which it is zero",
+            "position about which it turns or acts",
             place_m(rig_.centre_m - reach_m),
             place_m(rig_.centre_m + reach_m),
             place_m(rig_.centre_m + 0.1 * rig_.length_m),

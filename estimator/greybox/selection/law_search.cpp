@@ -36,14 +36,6 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site, 
   return dictionary;
 }
 
-/// True where the model has a friction or one of the effects is.
-bool rubs(const SearchContext& context, const std::vector<std::string>& effects) {
-  plant_sim::ModelFile model = context.problem.model;
-  const double* const level_N = model.value("friction.coulomb_N");
-  return (level_N != nullptr && *level_N > 0.0) ||
-         std::find(effects.begin(), effects.end(), "friction") != effects.end();
-}
-
 /// False where no law is better by kRivals_nats in the place of what was found: beside it a law is
 /// never less likely than alone, and none promises half as much there. The parameters of a single
 /// effect are counted; several with names are kept where a law is no likelier than they, inexact
@@ -68,6 +60,16 @@ bool promises(const SearchContext& search, const InnovationSearch& named) {
 }
 
 }  // namespace
+
+bool rubs(const SearchContext& context, const std::vector<std::string>& effects) {
+  plant_sim::ModelFile model = context.problem.model;
+  const auto has = [&](const char* name) {
+    const double* const level_N = model.value(name);
+    return level_N != nullptr && *level_N > 0.0;
+  };
+  return has("friction.coulomb_N") || has("friction.static_N") ||
+         std::find(effects.begin(), effects.end(), "friction") != effects.end();
+}
 
 bool law_promises(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {

@@ -18,6 +18,9 @@ struct LawSearch {
   std::vector<Law> laws;  ///< those among the final model's effects, in the order added
 };
 
+/// True where the model has a friction or one of the effects is: laws of its level mean something.
+[[nodiscard]] bool rubs(const SearchContext& context, const std::vector<std::string>& effects);
+
 /// True where a law promises something beside the effects found, without which it cannot be clearly
 /// better in their place. `site` as in search_laws().
 [[nodiscard]] bool law_promises(const SearchContext& context, const std::string& site,

@@ -206,8 +206,7 @@ std::vector<Attempt> first_attempts(const SearchContext& context, const Innovati
       attempts.push_back(std::move(*attempt));
   }
   // the score test knows no friction whose level changes: gains and drags stand in for it
-  const std::vector<std::string>& effects = stage.model.added;
-  if (std::find(effects.begin(), effects.end(), "friction") != effects.end()) {
+  if (rubs(context, stage.model.added)) {
     const Place place{"dry_friction", "y_m", "", "y", kCurveOfFriction};
     if (std::optional<Attempt> attempt = attempt_at(context, place, kFirstPoints))
       attempts.push_back(std::move(*attempt));

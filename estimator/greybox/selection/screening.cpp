@@ -24,7 +24,7 @@ constexpr double kFurthest = 3.0;
 constexpr std::size_t kFollowed = 4;
 /// Number of frequencies of a resonance from which fits start.
 constexpr std::size_t kFollowedPeaks = 3;
-/// Share of the scan's small resonance that one of usual size on the driven part is.
+/// Multiple of the scan's small resonance that one of usual size on the driven part is.
 constexpr double kUsualSwing = 5.0;
 
 struct ScoredStart {

@@ -81,6 +81,15 @@ TEST(LawCurve, HoldsTheOtherVariableAndSaysWhere) {
   EXPECT_NEAR(curve.f.back(), 5.0 * curve.held->value * curve.x.back(), 1e-9);
 }
 
+TEST(LawCurve, OfDryFrictionIsAShareOfIt) {
+  const plant_sim::ModelFile model =
+      with_formula("force_driven_axis", "dry_friction", "c * y_m", {{"c", 5.0}});
+  const LawCurve curve = law_curve(model, swinging(), "law", "y", Eigen::VectorXd::Constant(1, 1.0),
+                                   Eigen::MatrixXd());
+  EXPECT_EQ(curve.quantity, "friction_ratio");
+  EXPECT_NEAR(curve.f.back(), 5.0 * curve.x.back(), 1e-9);
+}
+
 TEST(LawCurve, OfAChainedSiteIsWhatTheFormulaAdds) {
   const plant_sim::ModelFile model =
       with_formula("velocity_servo", "command", "u_V * (1 + a * u_V)", {{"a", 0.1}});

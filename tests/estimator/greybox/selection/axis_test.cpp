@@ -196,7 +196,7 @@ TEST(AxisFriction, TurnsGradually) {
   }
 }
 
-// No effect of the library: a law beside the friction, at the level of it.
+// The library has no such effect: a law of the level of friction.
 TEST(LongAxisFriction, ChangesAlongTheStroke) {
   const auto rub_N = [](double v_mps, double y_m) {
     return 20.0 * (1.0 + 4.0 * y_m) * std::tanh(v_mps / 3e-4);
