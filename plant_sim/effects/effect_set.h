@@ -26,8 +26,8 @@ class EffectSet : public EffectStore<S, E...> {
     half_step_s_ = 0.5 * step_s;
   }
 
-  /// Call at the beginning of every step where friction_varies(): the level of dry friction is that
-  /// of the step's middle.
+  /// Sets the level of dry friction to that in the middle of a step. Where friction_varies(), call
+  /// it at the beginning of every step.
   template <class Motion>
   void weigh_friction(Motion&& motion) {
     constexpr double kLeast = 1e-3;
@@ -304,7 +304,7 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
   double half_step_s_ = 0.0;
-  S friction_ratio_ = 1.0;  ///< of the level of dry friction to that of its parameters, > 0
+  S friction_ratio_ = 1.0;  ///< level of dry friction over that of its parameters, > 0
 };
 
 }  // namespace plant_sim::effects

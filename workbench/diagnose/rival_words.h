@@ -1,4 +1,4 @@
-// What else would explain a record as well as the effects found.
+// Sentences on rivals: other causes that would explain a record as well as the effects found.
 #pragma once
 
 #include <string>

@@ -174,7 +174,7 @@ class Dictionary {
         {size("area_m2", force_N / rig_.pressure_Pa, Sign::positive)}, {"v", "pressure"});
   }
 
-  /// Beside a friction, as shares of it.
+  /// Laws of the level of a friction that is there, as shares of it.
   void add_friction_levels() {
     const double y = rig_.length_m;
     add("sloping_friction", "friction that changes along the stroke", "dry_friction",

@@ -161,6 +161,10 @@ TEST(Advice, ForAPlaceThatIsNotToldNamesWhatTellsEach) {
   const std::string once =
       advice_for_unexplained({{"flow", "u", 0.9, {"gain"}}}, "force_driven_axis");
   EXPECT_EQ(once.find("current"), once.rfind("current")) << once;
+  const std::string either =
+      advice_for_unexplained({{"force", "y", 0.9, {"gain"}}}, "force_driven_axis");
+  EXPECT_THAT(either, HasSubstr("record the motor's current."));
+  EXPECT_THAT(either, Not(HasSubstr("load cell"))) << "a load cell does not show the gain";
 }
 
 TEST(Advice, NamesNoValveAndNoChambersWhereThePlantHasNone) {

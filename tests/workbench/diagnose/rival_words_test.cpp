@@ -1,4 +1,4 @@
-// What else would explain a record, in sentences.
+// Sentences on rivals of the effects found.
 #include "workbench/diagnose/rival_words.h"
 
 #include <gmock/gmock.h>

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "config/record/record.h"
+#include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "plant_sim/model_file.h"
 
@@ -33,8 +34,8 @@ struct Rig {
   double shake_m = 0.0;  ///< amplitude of the reference at 5 Hz
 };
 
-/// M v' = g(t) u - d v - F - rub(v, y) under a proportional controller, in steps of 0.05 ms; 2 um
-/// of noise and an encoder of 1 um.
+/// M v' = g(t) u - d v - F - rub(v, y) under a proportional controller, in steps of 0.05 ms; the
+/// encoder counts 1 um and has 2 um of noise.
 template <class Gain, class Rub = decltype(kNoRub)>
 config::record::Record axis_record(const Gain& gain_N_per_V, double load_N,
                                    const Rub& rub_N = kNoRub, const Rig& rig = {}) {
@@ -177,6 +178,27 @@ TEST(AxisRipple, IsNamedWhereNoSimulationFollowsTheMotion) {
   EXPECT_NEAR(*better.value("mass_kg"), light.mass_kg, 0.01);
   EXPECT_NEAR(*better.value("force_ripple.amplitude_N"), 15.0, 0.01);
   EXPECT_NEAR(*better.value("force_ripple.wavelength_m"), 0.032, 1e-5);
+}
+
+TEST(AxisRipple, IsAmplifiedWhereTheRandomPartIsNextToNothing) {
+  const SearchContext context = axis_context(kSteady, 0.0);
+  const InnovationSearch search;
+  Disturbance small;
+  small.as = "force";
+  small.value = 1e-3;
+  small.rms_m = 1.0;
+  EXPECT_TRUE(loses_motion(context, search, small));
+  Disturbance other = small;
+  other.lines = {{"force", 3.0, 20.0, 1.0}};
+  EXPECT_FALSE(loses_motion(context, search, other)) << "a line moves the axis as far";
+  other = small;
+  other.value = 0.0;
+  EXPECT_FALSE(loses_motion(context, search, other));
+  other.value = 10.0;
+  EXPECT_FALSE(loses_motion(context, search, other)) << "a strong force needs no amplifying";
+  other = small;
+  other.rms_m = 1e-6;
+  EXPECT_FALSE(loses_motion(context, search, other));
 }
 
 // A contact that turns its sign over 0.3 or 2 mm/s; neither a spring before it slides nor a jump

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <string>
 
 #include "estimator/greybox/selection/diagnosis.h"
 
@@ -131,6 +132,18 @@ TEST(Confidence, NothingIsMissingForSureWhereNoEffectIsEstablished) {
   weigh_doubts(d);
   EXPECT_EQ(d.verdict, Verdict::undetermined);
   EXPECT_THAT(d.established(), IsEmpty());
+}
+
+TEST(Confidence, NothingIsLearnedWhereALawIsNotEstablished) {
+  for (const char* law : {"friction", "backlash"}) {
+    Diagnosis d = unexplained();
+    d.verdict = Verdict::learned;
+    d.laws.emplace_back();
+    d.laws.front().effect.name = law;
+    weigh_doubts(d);
+    // the backlash is within its error
+    EXPECT_EQ(d.verdict == Verdict::learned, law == std::string("friction")) << law;
+  }
 }
 
 TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {

@@ -90,6 +90,37 @@ TEST(TrialSizes, OfHalfTheNumberStandBetweenTheOthersInStepsTwiceAsWide) {
   }
 }
 
+TEST(TrialSizes, PutALawOfOnePlaceAllOverTheMotion) {
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/force_driven_axis.toml");
+  model.declare({"bump",
+                 "force",
+                 "force_N * exp(-((y_m - rest_m) / width_m)^2)",
+                 "",
+                 {{"force_N", "", 0.0, 1e3, 10.0, 0.0},
+                  {"rest_m", "", -1.0, 1.0, 0.3, 0.0},
+                  {"width_m", "", 1e-3, 1.0, 0.02, 0.04}},
+                 "",
+                 {}},
+                "test");
+  const std::vector<greybox::FreeParameter> parameters =
+      greybox::effect_parameters(plant_sim::effects_of(model).back(), 2);
+  const Eigen::MatrixXd sizes = trial_sizes(parameters, motion(), 4);
+  const std::size_t rest = at(parameters, ".rest_m");
+  const std::size_t width = at(parameters, ".width_m");
+  std::set<double> places_m;
+  double narrowest_m = 1.0;
+  for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
+    places_m.insert(parameters[rest].to_physical(sizes(static_cast<Eigen::Index>(rest), k)));
+    narrowest_m = std::min(
+        narrowest_m, parameters[width].to_physical(sizes(static_cast<Eigen::Index>(width), k)));
+  }
+  ASSERT_GE(places_m.size(), 10U);
+  EXPECT_LT(*places_m.begin(), 0.26);
+  EXPECT_GT(*places_m.rbegin(), 0.34);
+  EXPECT_LT(narrowest_m, 0.01) << "no wider than the way between two places";
+}
+
 TEST(TrialSizes, PutARestPositionWhereTheMotionIs) {
   const std::vector<greybox::FreeParameter> parameters = own("load_spring");
   const std::size_t rest = at(parameters, ".rest_m");
