@@ -35,9 +35,6 @@ constexpr double kPeriodsOfDrift = 4.0;
 /// Share of the error from which on another beginning of the search leaves far less.
 constexpr double kFarLess = 0.5;
 
-/// Effects beside which much physics is missing, from which on laws are tried in their place.
-constexpr std::size_t kBeforeLaws = 2;
-
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
 /// nearly the same, the disturbance in both decides.
@@ -71,10 +68,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   bool asked = false;
   bool learned = false;
   const auto ends_at = [&](const InnovationStage& stage, double inexact_nats) {
-    if (asked || stage.model.added.size() < kBeforeLaws ||
-        !leaves_much_physics(stage, inexact_nats) || !may_learn_early(search, stage)) {
-      return false;
-    }
+    if (asked || !may_learn_early(search, stage, inexact_nats)) return false;
     asked = true;
     learned = learn_law_early(search, first, stage, start.branch.stage, result);
     return learned;

@@ -46,9 +46,9 @@ class Dictionary {
     add_commands();
     add_leakage();
     add_readings();
+    if (choice != LawChoice::against_effects) add_friction_levels();
     if (choice == LawChoice::unexplained) {
       add_bent_forces();
-      add_friction_levels();
       add_saturations();
       add_leakage_along_stroke();
       add_mount();

@@ -16,9 +16,10 @@ struct Law {
   std::vector<std::string> variables;  ///< "y", "v", "u", "speed", "direction", "pressure"
 };
 
-/// Laws of the dictionary: those that are held against named effects, or beside them the forms that
-/// come near to effects of the library, for records that no effect explains.
-enum class LawChoice { against_effects, unexplained };
+/// Laws of the dictionary: those that are held against named effects; with them those of the level
+/// of a friction, which stand beside it; with these the forms that come near to effects of the
+/// library, for records that no effect explains.
+enum class LawChoice { against_effects, beside_effects, unexplained };
 
 /// Those that the plant has a site for, their sizes scaled to the rig. A law whose name the model
 /// has given to a formula of its own is left out.

@@ -21,6 +21,11 @@ struct LawSearch {
 /// True where the model has a friction or one of the effects is: laws of its level mean something.
 [[nodiscard]] bool rubs(const SearchContext& context, const std::vector<std::string>& effects);
 
+/// Gain that the most promising law of the level of a friction promises beside the stage, which has
+/// one; 0: none.
+[[nodiscard]] double friction_level_nats(const SearchContext& context,
+                                         const InnovationStage& stage);
+
 /// True where a law promises something beside the effects found, without which it cannot be clearly
 /// better in their place. `site` as in search_laws().
 [[nodiscard]] bool law_promises(const SearchContext& context, const std::string& site,

@@ -17,6 +17,11 @@ namespace {
 /// Size of a law over its standard error, from which on it is learned.
 constexpr double kClearOfError = 3.0;
 
+/// Effects beside which much physics is missing, from which on laws are tried in their place, and
+/// the most laws and effects that are tried then.
+constexpr std::size_t kBeforeLaws = 2;
+constexpr std::size_t kMostEarly = 2;
+
 /// How a law enters, in the words of a Localisation.
 std::string class_of(const Law& law) {
   if (law.effect.site == "force" || law.effect.site == "dry_friction") return "force";
@@ -121,16 +126,19 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, const Mod
   return beside(named) || (!same && beside(likeliest));
 }
 
-bool may_learn_early(const SearchContext& context, const InnovationStage& stage) {
+bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
+                     double inexact_nats) {
   // parameters may differ between records, and change within one, before a law is missing
-  return context.problem.data.fitted_records == 1 && motion_explains_more(stage);
+  if (context.problem.data.fitted_records != 1) return false;
+  if (is_much(friction_level_nats(context, stage), inexact_nats)) return true;
+  return stage.model.added.size() >= kBeforeLaws && leaves_much_physics(stage, inexact_nats) &&
+         motion_explains_more(stage);
 }
 
 bool learn_law_early(const SearchContext& context, const ModelStage& first,
                      const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
-  constexpr std::size_t kMostEffects = 2;
   const std::optional<LawSearch> found =
-      search_laws(context, first, "", stage.model.added, LawChoice::against_effects, kMostEffects);
+      search_laws(context, first, "", stage.model.added, LawChoice::beside_effects, kMostEarly);
   if (!found) return false;
   const double enough = penalised(found->innovations.final) + 2.0 * kRivals_nats;
   if (!(enough < penalised(stage))) return false;

@@ -12,14 +12,17 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
                               const ModelStage& likeliest, Diagnosis& result);
 
-/// True for a single record of which a curve over the motion promises more than any change in time.
-[[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage);
+/// True for a single record of which much is left beside the stage to a law: to one of the level of
+/// a friction, or, beside several effects, to a curve over the motion that promises more than any
+/// change in time. `inexact_nats`: gains that inexact models of what was explained may owe.
+[[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
+                                   double inexact_nats);
 
-/// Takes one law, alone or beside one effect, or two laws, where they explain the record that may
-/// teach one early: sooner than learn_laws(), which waits for all that effects may explain.
-/// `stage`: effects that leave much unexplained; `held`: the best of a search by simulations; the
-/// laws have to be likelier than either. Laws that come near to named effects are not tried. False:
-/// `result` is as before.
+/// Takes one law, alone or beside effects of `stage`, or two laws, where they explain the record
+/// that may teach one early: sooner than learn_laws(), which waits for all that effects may
+/// explain. `stage`: effects that leave much unexplained; `held`: the best of a search by
+/// simulations; the laws have to be likelier than either. Laws that come near to named effects are
+/// not tried. False: `result` is as before.
 [[nodiscard]] bool learn_law_early(const SearchContext& context, const ModelStage& first,
                                    const InnovationStage& stage, const ModelStage& held,
                                    Diagnosis& result);
