@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Gain where much physics is missing, over that of a mere remainder.
+/// Gain of a curve where much physics is missing, over that of a mere remainder.
 constexpr double kMuch = 3.0;
 
 /// Half the fall of the squared innovations, in units of the floor, when the columns join the
@@ -88,12 +88,8 @@ bool leaves_physics(const InnovationStage& stage) {
   return largest_curve_nats(stage) > kCurve_nats;
 }
 
-bool is_much(double gain_nats, double inexact_nats) {
-  return gain_nats > kMuch * (kCurve_nats + inexact_nats);
-}
-
 bool leaves_much_physics(const InnovationStage& stage, double inexact_nats) {
-  return is_much(largest_curve_nats(stage), inexact_nats);
+  return largest_curve_nats(stage) > kMuch * (kCurve_nats + inexact_nats);
 }
 
 }  // namespace estimator::greybox::selection

@@ -28,10 +28,8 @@ inline constexpr double kCurve_nats = 30.0;
 [[nodiscard]] double largest_curve_nats(const InnovationStage& stage);
 /// True where that curve shows that physics is missing.
 [[nodiscard]] bool leaves_physics(const InnovationStage& stage);
-/// True for several times the gain of a curve beside a mere remainder. `inexact_nats`: gains that
-/// inexact models of what was explained may owe.
-[[nodiscard]] bool is_much(double gain_nats, double inexact_nats);
-/// True where that curve gains much.
+/// True where that curve gains several times what it may beside a mere remainder. `inexact_nats`:
+/// gains that inexact models of what was explained may owe.
 [[nodiscard]] bool leaves_much_physics(const InnovationStage& stage, double inexact_nats);
 
 }  // namespace estimator::greybox::selection

@@ -20,7 +20,7 @@ constexpr double kClearOfError = 3.0;
 /// Effects beside which much physics is missing, from which on laws are tried in their place, and
 /// the most laws and effects that are tried then.
 constexpr std::size_t kBeforeLaws = 2;
-constexpr std::size_t kMostEarly = 2;
+constexpr std::size_t kMostEarly = 3;
 
 /// How a law enters, in the words of a Localisation.
 std::string class_of(const Law& law) {
@@ -130,7 +130,7 @@ bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
                      double inexact_nats) {
   // parameters may differ between records, and change within one, before a law is missing
   if (context.problem.data.fitted_records != 1) return false;
-  if (is_much(friction_level_nats(context, stage), inexact_nats)) return true;
+  if (friction_level_nats(context, stage) > kCurve_nats + inexact_nats) return true;
   return stage.model.added.size() >= kBeforeLaws && leaves_much_physics(stage, inexact_nats) &&
          motion_explains_more(stage);
 }

@@ -12,9 +12,9 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
                               const ModelStage& likeliest, Diagnosis& result);
 
-/// True for a single record of which much is left beside the stage to a law: to one of the level of
-/// a friction, or, beside several effects, to a curve over the motion that promises more than any
-/// change in time. `inexact_nats`: gains that inexact models of what was explained may owe.
+/// True for a single record of which a law of the level of the stage's friction promises to explain
+/// more, or, beside several effects, a curve over the motion much more, and more than any change in
+/// time. `inexact_nats`: gains that inexact models of what was explained may owe.
 [[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
                                    double inexact_nats);
 

@@ -11,6 +11,8 @@
 #include "config/record/record.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/law_search.h"
+#include "estimator/greybox/selection/structure_search.h"
 #include "plant_sim/model_file.h"
 
 namespace estimator::greybox::selection {
@@ -215,6 +217,28 @@ TEST(AxisFriction, TurnsGradually) {
     plant_sim::ModelFile better = d.better;
     EXPECT_NEAR(*better.value("friction.coulomb_N"), 20.0, 0.02);
     EXPECT_NEAR(*better.value("friction.transition_mps"), transition_mps, 0.1 * transition_mps);
+  }
+}
+
+// What a law of the level promises decides whether laws are sought before further effects.
+TEST(AxisFriction, LeavesSomethingToALawOfItsLevelWhereItChangesAlongTheStroke) {
+  for (const double slope_per_m : {0.0, 2.0}) {
+    const auto rub_N = [&](double v_mps, double y_m) {
+      return 20.0 * (1.0 + slope_per_m * y_m) * std::tanh(v_mps / 3e-4);
+    };
+    config::record::Record record = axis_record(kSteady, 0.0, rub_N);
+    for (std::vector<double>* values : {&record.t_s, &record.u_V, &record.y_m}) {
+      values->resize(1600);
+    }
+    SearchContext context = context_of(record);
+    EXPECT_EQ(friction_level_nats(context, {}), 0.0);  // no friction, no level
+    *context.problem.model.value("friction.coulomb_N") = 15.0;
+    *context.problem.model.value("friction.transition_mps") = 3e-4;
+    context.problem = make_problem(context.problem.model, context.problem.data);
+    const InnovationStage stage =
+        settled(context, start_search(context).first, {}, 1, SimulationWidth{});
+    const double nats = friction_level_nats(context, stage);
+    EXPECT_EQ(nats > kCurve_nats + 10.0, slope_per_m > 0.0) << nats;
   }
 }
 
