@@ -222,13 +222,13 @@ TEST(AxisFriction, TurnsGradually) {
 
 // What a law of the level promises decides whether laws are sought before further effects.
 TEST(AxisFriction, LeavesSomethingToALawOfItsLevelWhereItChangesAlongTheStroke) {
-  for (const double slope_per_m : {0.0, 2.0}) {
+  for (const double slope_per_m : {0.0, 4.0}) {
     const auto rub_N = [&](double v_mps, double y_m) {
       return 20.0 * (1.0 + slope_per_m * y_m) * std::tanh(v_mps / 3e-4);
     };
     config::record::Record record = axis_record(kSteady, 0.0, rub_N);
     for (std::vector<double>* values : {&record.t_s, &record.u_V, &record.y_m}) {
-      values->resize(1600);
+      values->resize(2800);
     }
     SearchContext context = context_of(record);
     EXPECT_EQ(friction_level_nats(context, {}), 0.0);  // no friction, no level
