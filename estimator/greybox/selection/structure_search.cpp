@@ -102,19 +102,23 @@ bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pair
   return true;
 }
 
-/// Search from `first` with a candidate as its beginning, after the round `begun`.
-SearchBranch branch_from(const SearchContext& context, CrossValidation& halves,
-                         const ModelStage& first, const Candidate& candidate, const Round& begun) {
+/// A candidate as the beginning of a search from `first`, after the round `begun`.
+SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
+                         const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
   refit_without_refinements(context, other.stage);
   take_alternative_refinements(context, other.stage);
-  extend_branch(context, other, false);
-  eliminate_backward(context, halves, other.stage, EliminationPass::intermediate);
   if (candidate.effects.size() > 1) {
     auto& candidates = other.rounds.front().candidates;
     candidates.insert(candidates.begin(), candidate);
   }
   return other;
+}
+
+/// Searches on from a beginning, without pairs.
+void complete_branch(const SearchContext& context, CrossValidation& halves, SearchBranch& branch) {
+  extend_branch(context, branch, false);
+  eliminate_backward(context, halves, branch.stage, EliminationPass::intermediate);
 }
 
 bool improves_on(const SearchBranch& other, const SearchBranch& best) {
@@ -124,15 +128,15 @@ bool improves_on(const SearchBranch& other, const SearchBranch& best) {
 /// Pair of effects as the beginning, where a stepwise search has not explained the record and the
 /// pair leaves at most `most_m`.
 std::optional<SearchBranch> start_with_pair(
-    const SearchContext& context, CrossValidation& halves, const ModelStage& first,
-    const SearchBranch& best, double most_m = std::numeric_limits<double>::infinity()) {
+    const SearchContext& context, const ModelStage& first, const SearchBranch& best,
+    double most_m = std::numeric_limits<double>::infinity()) {
   if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
   std::vector<std::string> begun;  // beginning with which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = pair_search(context, first, begun);
   if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
   if (!(pairs.front().validation_rms_m <= most_m)) return {};
-  return branch_from(context, halves, first, pairs.front(), best.rounds.front());
+  return branch_from(context, first, pairs.front(), best.rounds.front());
 }
 
 /// The rest of a stepwise search, with pairs where these lead further.
@@ -144,7 +148,8 @@ SearchBranch search_forward(const SearchContext& context, CrossValidation& halve
     if (!best.stalled) extend_branch(context, best, true, kBeforePairSearch);
   }
   const bool may_go_on = !best.stalled && best.stage.added.size() >= kBeforePairSearch;
-  std::optional<SearchBranch> other = start_with_pair(context, halves, first, best);
+  std::optional<SearchBranch> other = start_with_pair(context, first, best);
+  if (other) complete_branch(context, halves, *other);
   if (other && is_explained(context, other->stage) && improves_on(*other, best)) return *other;
   if (may_go_on) extend_branch(context, best, true);
   eliminate_backward(context, halves, best.stage, EliminationPass::intermediate);
@@ -167,7 +172,8 @@ void try_alternative_starts(const SearchContext& context, CrossValidation& halve
     if (apart_m < kSamePath * firsts[i].validation_rms_m) continue;
     const auto& added = best.stage.added;
     if (std::find(added.begin(), added.end(), firsts[i].effects.front()) != added.end()) continue;
-    SearchBranch other = branch_from(context, halves, first, firsts[i], best.rounds.front());
+    SearchBranch other = branch_from(context, first, firsts[i], best.rounds.front());
+    complete_branch(context, halves, other);
     if (improves_on(other, best)) best = std::move(other);
   }
 }
@@ -245,10 +251,12 @@ void add_second_effect(const SearchContext& context, SearchStart& start) {
 }
 
 void prefer_pair(const SearchContext& context, SearchStart& start) {
-  CrossValidation halves(context);
   std::optional<SearchBranch> pair = start_with_pair(
-      context, halves, start.first, start.branch, kNearFloor * context.problem.data.noise_floor_m);
-  if (pair && is_explained(context, pair->stage)) start.branch = std::move(*pair);
+      context, start.first, start.branch, kNearFloor * context.problem.data.noise_floor_m);
+  if (!pair || !is_explained(context, pair->stage)) return;
+  CrossValidation halves(context);
+  complete_branch(context, halves, *pair);
+  start.branch = std::move(*pair);
 }
 
 StructureSearch abandon_search(const SearchContext& context, const SearchStart& start) {
