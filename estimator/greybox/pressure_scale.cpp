@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
+#include "plant_sim/formula/formula.h"
 
 namespace estimator::greybox {
 namespace {
@@ -39,7 +42,7 @@ bool is_absolute(const std::string& name) {
 
 /// True where the model has something that an absolute pressure or flow belongs to.
 bool has_absolute(const plant_sim::ModelFile& model) {
-  if (!model.formula_effects.empty() || !model.changes.empty()) return true;
+  if (!model.changes.empty()) return true;
   const auto given = [](const plant_sim::NamedValue& one) {
     return one.name.starts_with("pressure_") && std::isfinite(one.value);
   };
@@ -57,12 +60,79 @@ bool ties(const FitSummary& fitted, const std::string& name, double value) {
                       [&](const FreeParameter& p) { return p.name == name; });
 }
 
+/// Power of the scale with which a formula's result must change; none for a formula that sees a
+/// spool, whose travel is not known to scale, or has a memory.
+std::optional<double> power_of(const plant_sim::formula::FormulaView& formula) {
+  const auto* const first = formula.program.reads;
+  const auto* const last = first + formula.program.read_count;
+  if (formula.remembers || std::find(first, last, plant_sim::formula::kSpool) != last) return {};
+  return formula.place.site == plant_sim::effects::Site::force ? 1.0 : 0.0;
+}
+
+/// True for a formula whose law stays the same when pressures and its parameters scale: tried at
+/// states all over its signals' ranges.
+bool scales(const plant_sim::formula::FormulaView& formula, const std::vector<double>& values) {
+  constexpr double kScale = 1.7;
+  constexpr int kStates = 24;
+  constexpr double kExact = 1e-9;
+  const std::optional<double> power = power_of(formula);
+  if (!power) return false;
+  std::vector<double> scaled = values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    scaled[i] *=
+        std::pow(kScale, power_of(std::string(formula.name) + "." + formula.parameters[i].name));
+  }
+  plant_sim::formula::ExpressionEvaluator<double> before(formula.program);
+  plant_sim::formula::ExpressionEvaluator<double> after(formula.program);
+  before.set_parameters(values.data());
+  after.set_parameters(scaled.data());
+  for (int k = 1; k <= kStates; ++k) {
+    std::array<double, plant_sim::formula::kSignals> at{};
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      // multiples of different roots, modulo 1: no two signals go together
+      const double share = std::fmod(k * std::sqrt(static_cast<double>(i) + 2.3), 1.0);
+      const plant_sim::formula::VariableRange& range = formula.ranges[i];
+      at[i] = range.min + share * (range.max - range.min);
+    }
+    const double expected = std::pow(kScale, *power) * before(at.data());
+    at[plant_sim::formula::kInPressure] *= kScale;
+    at[plant_sim::formula::kOutPressure] *= kScale;
+    if (!(std::abs(after(at.data()) - expected) <= kExact * std::abs(expected))) return false;
+  }
+  return true;
+}
+
+/// True where a formula that is present, or fitted, ties the parameters to an absolute scale.
+bool formulas_tie(const plant_sim::ModelFile& model, const FitSummary& fitted) {
+  if (model.formula_effects.empty()) return false;
+  const plant_sim::formula::Formulas formulas = model.formulas();
+  for (std::size_t k = 0; k < formulas.size(); ++k) {
+    const plant_sim::formula::FormulaView& formula = formulas.data()[k];
+    const auto own = std::find_if(model.effects.begin(), model.effects.end(),
+                                  [&](const auto& one) { return one.name == formula.name; });
+    if (own == model.effects.end()) return true;
+    bool acts = own->present;
+    std::vector<double> values;
+    for (const plant_sim::NamedValue& one : own->parameters) {
+      values.push_back(one.value);
+      for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+        const FreeParameter& p = fitted.parameters[i];
+        if (p.name != own->name + "." + one.name) continue;
+        values.back() = p.to_physical(fitted.theta[static_cast<Index>(i)]);
+        acts = true;
+      }
+    }
+    if (acts && !scales(formula, values)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 VectorXd pressure_scale(const plant_sim::ModelFile& model, const FitSummary& fitted) {
   const auto is_supply = [](const auto& one) { return one.name == "supply_pressure_Pa"; };
   if (std::none_of(model.parameters.begin(), model.parameters.end(), is_supply)) return {};
-  if (has_absolute(model)) return {};
+  if (has_absolute(model) || formulas_tie(model, fitted)) return {};
   for (const plant_sim::NamedValue& one : model.parameters) {
     if (ties(fitted, one.name, one.value)) return {};
   }

@@ -23,11 +23,18 @@ bool is_in(const FitSummary& fitted, const FreeParameter& parameter) {
 }  // namespace
 
 bool ends_at_least(const FitSummary& fitted) {
+  return without_least(fitted).parameters.size() < fitted.parameters.size();
+}
+
+ParameterSubset without_least(const FitSummary& fitted) {
+  ParameterSubset rest;
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
     const FreeParameter& p = fitted.parameters[i];
-    if (p.instead_of > 0 && fitted.theta[static_cast<Eigen::Index>(i)] <= p.lower) return true;
+    const double value = fitted.theta[static_cast<Eigen::Index>(i)];
+    if (p.instead_of == 0 || value > p.lower)
+      append(rest, {{p}, Eigen::VectorXd::Constant(1, value)});
   }
-  return false;
+  return rest;
 }
 
 std::vector<ParameterSubset> alternative_refinements(const SearchContext& context,

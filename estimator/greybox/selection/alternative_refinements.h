@@ -17,6 +17,8 @@ namespace estimator::greybox::selection {
 
 /// True where such a refinement ends at the least that is another law than none.
 [[nodiscard]] bool ends_at_least(const FitSummary& fitted);
+/// The fit's parameters without those refinements.
+[[nodiscard]] ParameterSubset without_least(const FitSummary& fitted);
 
 /// Takes such a refinement where the stage leaves more than noise, but not far more, and less with
 /// it.

@@ -90,6 +90,9 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
       try_other(other, kPerRefinement * more + kRevived);
     }
   }
+  // others that have come in since make it of no use
+  if (effort == InnovationFit::converged && ends_at_least(fitted))
+    try_other(without_least(fitted), kRevived - kPerRefinement);
   stage.model.fitted = std::move(fitted);
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
                             stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,

@@ -85,6 +85,51 @@ TEST(PressureScale, DoesNotMoveTheRod) {
   }
 }
 
+plant_sim::ModelFile with_formula(const std::string& site, const std::string& formula,
+                                  const std::string& parameter, double value) {
+  plant_sim::ModelFile model = shipped("thesis.toml");
+  model.declare(
+      {"law", site, formula, "a law", {{parameter, "size", 0.0, 1e9, value, 0.0}}, "", {}}, "test");
+  for (plant_sim::ModelFile::Effect& effect : model.effects) {
+    if (effect.name == "law" || effect.name == "friction") effect.present = true;
+  }
+  *model.value("law." + parameter) = value;
+  *model.value("friction.coulomb_N") = 200.0;
+  return model;
+}
+
+TEST(PressureScale, IsSharedByFormulasThatScale) {
+  for (const plant_sim::ModelFile& model :
+       {with_formula("dry_friction", "slope_per_m * (y_m - 0.3)", "slope_per_m", 2.0),
+        with_formula("force", "c_N_s3_per_m3 * v_mps^3", "c_N_s3_per_m3", 2e5),
+        with_formula("force", "a_m2 * (in_Pa + out_Pa) * tanh(v_mps / 0.01)", "a_m2", 2e-5)}) {
+    const FitSummary fitted = fitted_to(model);
+    const Eigen::VectorXd along = pressure_scale(model, fitted);
+    ASSERT_EQ(along.size(), fitted.theta.size());
+    const double step = 0.001 / along.norm();
+    Eigen::VectorXd supply = Eigen::VectorXd::Zero(along.size());
+    for (Eigen::Index i = 0; i < along.size(); ++i) {
+      if (fitted.parameters[static_cast<std::size_t>(i)].name == "supply_pressure_Pa") {
+        supply[i] = step * along[i];
+      }
+    }
+    EXPECT_LT(moved_m(model, fitted, step * along), 0.002 * moved_m(model, fitted, supply));
+  }
+}
+
+TEST(PressureScale, IsTiedByFormulasThatDoNotScale) {
+  for (plant_sim::ModelFile model :
+       {with_formula("force", "ratio * (50 * v_mps + 300 * v_mps^3)", "ratio", 1.0),
+        with_formula("dry_friction", "ratio * (in_Pa + out_Pa) / 1e6", "ratio", 0.1),
+        with_formula("opening", "x_m * (1 - ratio * (x_m / 1e-4)^2)", "ratio", 0.1)}) {
+    EXPECT_EQ(pressure_scale(model, fitted_to(model)).size(), 0);
+    for (plant_sim::ModelFile::Effect& effect : model.effects) {
+      if (effect.name == "law") effect.present = false;  // declared only, it ties nothing
+    }
+    EXPECT_GT(pressure_scale(model, fitted_to(model)).size(), 0);
+  }
+}
+
 TEST(PressureScale, IsTiedByWhatIsHeld) {
   plant_sim::ModelFile model = shipped("thesis.toml");
   FitSummary fitted = fitted_to(model);
