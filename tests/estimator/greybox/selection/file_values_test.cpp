@@ -58,7 +58,7 @@ TEST(FileValues, AnEndThatTheUserSetStays) {
   EXPECT_NEAR(gain.lower, 2.0 * lower, 1e-12);
 }
 
-TEST(FileValues, AGainFarOffIsNoEffectBesideADeadBand) {
+TEST(LongFileValues, AGainFarOffIsNoEffectBesideADeadBand) {
   constexpr double kDataSheet = 0.1;
   constexpr double kOff_sds = -4.0;
   DiagnosisProblem nominal = context_of("motion=multisine,length_s=2").problem;

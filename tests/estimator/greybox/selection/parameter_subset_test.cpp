@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/greybox/selection/alternative_refinements.h"
+
 namespace estimator::greybox::selection {
 namespace {
 
@@ -23,6 +25,30 @@ TEST(LeavesItsRange, AResonanceWithoutDampingStandsForSomethingElse) {
   EXPECT_TRUE(leaves_its_range(resonance(0.2, 0, 1e-5, 0), 0));
   EXPECT_TRUE(leaves_its_range(resonance(0.95, 1, 0.03, 0), 0));
   EXPECT_FALSE(leaves_its_range(resonance(0.0, -1, 0.03, 0), 0));  // absent
+}
+
+/// A friction that turns gradually, over a width of which 0.05 is the least.
+FitSummary gradual_friction(double width) {
+  FitSummary fitted;
+  fitted.parameters.resize(3);
+  fitted.parameters[0].name = "friction.coulomb_N";
+  fitted.parameters[1].name = "friction.transition_mps";
+  fitted.parameters[1].instead_of = 1;
+  fitted.parameters[1].lower = 0.05;
+  fitted.parameters[2].name = "friction.stribeck_mps";
+  fitted.theta = Eigen::Vector3d(0.0, width, 0.0);
+  return fitted;
+}
+
+TEST(WithoutLeast, DropsAnAlternativeAtItsLeastAlone) {
+  EXPECT_FALSE(ends_at_least(gradual_friction(0.06)));
+  EXPECT_EQ(without_least(gradual_friction(0.06)).parameters.size(), 3u);
+  EXPECT_TRUE(ends_at_least(gradual_friction(0.05)));
+  const ParameterSubset rest = without_least(gradual_friction(0.05));
+  ASSERT_EQ(rest.parameters.size(), 2u);
+  EXPECT_EQ(rest.parameters[0].name, "friction.coulomb_N");
+  EXPECT_EQ(rest.parameters[1].name, "friction.stribeck_mps");
+  EXPECT_EQ(rest.start, Eigen::Vector2d(0.0, 0.0));
 }
 
 }  // namespace
