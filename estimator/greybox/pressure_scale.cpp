@@ -73,7 +73,7 @@ std::optional<double> power_of(const plant_sim::formula::FormulaView& formula) {
 /// states all over its signals' ranges.
 bool scales(const plant_sim::formula::FormulaView& formula, const std::vector<double>& values) {
   constexpr double kScale = 1.7;
-  constexpr int kStates = 24;
+  constexpr int kStates = 96;
   constexpr double kExact = 1e-9;
   const std::optional<double> power = power_of(formula);
   if (!power) return false;
@@ -86,6 +86,7 @@ bool scales(const plant_sim::formula::FormulaView& formula, const std::vector<do
   plant_sim::formula::ExpressionEvaluator<double> after(formula.program);
   before.set_parameters(values.data());
   after.set_parameters(scaled.data());
+  bool acts = false;
   for (int k = 1; k <= kStates; ++k) {
     std::array<double, plant_sim::formula::kSignals> at{};
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -94,12 +95,15 @@ bool scales(const plant_sim::formula::FormulaView& formula, const std::vector<do
       const plant_sim::formula::VariableRange& range = formula.ranges[i];
       at[i] = range.min + share * (range.max - range.min);
     }
+    at[plant_sim::formula::kSpeed] *= std::pow(10.0, -(k % 4));  // creep as well as full speed
     const double expected = std::pow(kScale, *power) * before(at.data());
+    acts = acts || expected != 0.0;
     at[plant_sim::formula::kInPressure] *= kScale;
     at[plant_sim::formula::kOutPressure] *= kScale;
     if (!(std::abs(after(at.data()) - expected) <= kExact * std::abs(expected))) return false;
   }
-  return true;
+  // one that is nowhere seen to act says nothing, unless it is absent
+  return acts || std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
 }
 
 /// True where a formula that is present, or fitted, ties the parameters to an absolute scale.

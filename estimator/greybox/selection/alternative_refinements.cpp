@@ -20,19 +20,29 @@ bool is_in(const FitSummary& fitted, const FreeParameter& parameter) {
                      [&](const FreeParameter& other) { return other.name == parameter.name; });
 }
 
+bool is_at_least(const FitSummary& fitted, std::size_t i) {
+  const FreeParameter& p = fitted.parameters[i];
+  return p.instead_of > 0 && fitted.theta[static_cast<Eigen::Index>(i)] <= p.lower;
+}
+
 }  // namespace
 
 bool ends_at_least(const FitSummary& fitted) {
-  return without_least(fitted).parameters.size() < fitted.parameters.size();
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    if (is_at_least(fitted, i)) return true;
+  }
+  return false;
 }
 
-ParameterSubset without_least(const FitSummary& fitted) {
+ParameterSubset without_least(const FitSummary& fitted, const std::vector<std::string>& added) {
   ParameterSubset rest;
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
     const FreeParameter& p = fitted.parameters[i];
-    const double value = fitted.theta[static_cast<Eigen::Index>(i)];
-    if (p.instead_of == 0 || value > p.lower)
-      append(rest, {{p}, Eigen::VectorXd::Constant(1, value)});
+    const bool is_added = std::any_of(added.begin(), added.end(), [&](const std::string& effect) {
+      return belongs_to(p, effect);
+    });
+    if (is_added && is_at_least(fitted, i)) continue;
+    append(rest, {{p}, Eigen::VectorXd::Constant(1, fitted.theta[static_cast<Eigen::Index>(i)])});
   }
   return rest;
 }

@@ -2,6 +2,7 @@
 // over a pre-sliding spring. Neither leads a fit to the other, so both are fitted.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "estimator/greybox/selection/parameter_subset.h"
@@ -17,8 +18,10 @@ namespace estimator::greybox::selection {
 
 /// True where such a refinement ends at the least that is another law than none.
 [[nodiscard]] bool ends_at_least(const FitSummary& fitted);
-/// The fit's parameters without those refinements.
-[[nodiscard]] ParameterSubset without_least(const FitSummary& fitted);
+/// The fit's parameters without those refinements of the effects that were added; what the model
+/// file has stays, where it may keep the file's value alone.
+[[nodiscard]] ParameterSubset without_least(const FitSummary& fitted,
+                                            const std::vector<std::string>& added);
 
 /// Takes such a refinement where the stage leaves more than noise, but not far more, and less with
 /// it.

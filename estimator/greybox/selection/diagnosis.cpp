@@ -35,6 +35,9 @@ constexpr double kPeriodsOfDrift = 4.0;
 /// Share of the error from which on another beginning of the search leaves far less.
 constexpr double kFarLess = 0.5;
 
+/// Searches for laws before all effects have been tried, each beside others.
+constexpr std::size_t kMostEarlySearches = 2;
+
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
 /// nearly the same, the disturbance in both decides.
@@ -65,11 +68,16 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const ModelStage first = start.first;
   result.search = abandon_search(search, start);
   SearchLimits limits;
-  bool asked = false;
+  std::vector<std::vector<std::string>> asked;  // effects beside which laws were sought
   bool learned = false;
   const auto ends_at = [&](const InnovationStage& stage, double inexact_nats) {
-    if (asked || !may_learn_early(search, stage, inexact_nats)) return false;
-    asked = true;
+    const std::vector<std::string>& added = stage.model.added;
+    if (asked.size() == kMostEarlySearches ||
+        std::find(asked.begin(), asked.end(), added) != asked.end() ||
+        !may_learn_early(search, stage, inexact_nats)) {
+      return false;
+    }
+    asked.push_back(added);
     learned = learn_law_early(search, first, stage, start.branch.stage, result);
     return learned;
   };

@@ -91,8 +91,11 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
     }
   }
   // others that have come in since make it of no use
-  if (effort == InnovationFit::converged && ends_at_least(fitted))
-    try_other(without_least(fitted), kRevived - kPerRefinement);
+  if (const ParameterSubset rest = without_least(fitted, stage.model.added);
+      effort == InnovationFit::converged && rest.parameters.size() < fitted.parameters.size()) {
+    const double fewer = static_cast<double>(fitted.parameters.size() - rest.parameters.size());
+    try_other(rest, kRevived - kPerRefinement * fewer);
+  }
   stage.model.fitted = std::move(fitted);
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
                             stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,

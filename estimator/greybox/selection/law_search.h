@@ -21,8 +21,8 @@ struct LawSearch {
 /// True where the model has a friction or one of the effects is: laws of its level mean something.
 [[nodiscard]] bool rubs(const SearchContext& context, const std::vector<std::string>& effects);
 
-/// Gain that the most promising law of the level of a friction promises beside the stage, which has
-/// one; 0: none.
+/// Gain that the most promising law of the level of a friction promises beside the stage, without
+/// the penalty for its parameters; 0 where nothing rubs, no law promises anything, or cancelled.
 [[nodiscard]] double friction_level_nats(const SearchContext& context,
                                          const InnovationStage& stage);
 

@@ -18,7 +18,7 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
                                    double inexact_nats);
 
-/// Takes one law, alone or beside effects of `stage`, or two laws, where they explain the record
+/// Takes one law or two, with effects of `stage` up to three in all, where they explain the record
 /// that may teach one early: sooner than learn_laws(), which waits for all that effects may
 /// explain. `stage`: effects that leave much unexplained; `held`: the best of a search by
 /// simulations; the laws have to be likelier than either. Laws that come near to named effects are

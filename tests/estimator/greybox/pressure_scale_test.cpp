@@ -120,6 +120,7 @@ TEST(PressureScale, IsSharedByFormulasThatScale) {
 TEST(PressureScale, IsTiedByFormulasThatDoNotScale) {
   for (plant_sim::ModelFile model :
        {with_formula("force", "ratio * (50 * v_mps + 300 * v_mps^3)", "ratio", 1.0),
+        with_formula("force", "ratio * 300 * max(0.05 - abs(v_mps), 0)", "ratio", 1.0),
         with_formula("dry_friction", "ratio * (in_Pa + out_Pa) / 1e6", "ratio", 0.1),
         with_formula("opening", "x_m * (1 - ratio * (x_m / 1e-4)^2)", "ratio", 0.1)}) {
     EXPECT_EQ(pressure_scale(model, fitted_to(model)).size(), 0);

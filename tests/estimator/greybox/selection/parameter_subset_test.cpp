@@ -42,13 +42,14 @@ FitSummary gradual_friction(double width) {
 
 TEST(WithoutLeast, DropsAnAlternativeAtItsLeastAlone) {
   EXPECT_FALSE(ends_at_least(gradual_friction(0.06)));
-  EXPECT_EQ(without_least(gradual_friction(0.06)).parameters.size(), 3u);
+  EXPECT_EQ(without_least(gradual_friction(0.06), {"friction"}).parameters.size(), 3u);
   EXPECT_TRUE(ends_at_least(gradual_friction(0.05)));
-  const ParameterSubset rest = without_least(gradual_friction(0.05));
+  const ParameterSubset rest = without_least(gradual_friction(0.05), {"friction"});
   ASSERT_EQ(rest.parameters.size(), 2u);
   EXPECT_EQ(rest.parameters[0].name, "friction.coulomb_N");
   EXPECT_EQ(rest.parameters[1].name, "friction.stribeck_mps");
   EXPECT_EQ(rest.start, Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(without_least(gradual_friction(0.05), {}).parameters.size(), 3u);  // the file's own
 }
 
 }  // namespace
