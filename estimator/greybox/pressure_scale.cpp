@@ -69,12 +69,13 @@ std::optional<double> power_of(const plant_sim::formula::FormulaView& formula) {
   return formula.place.site == plant_sim::effects::Site::force ? 1.0 : 0.0;
 }
 
-/// True for a formula whose law stays the same when pressures and its parameters scale: tried at
-/// states all over its signals' ranges.
+constexpr double kScale = 1.7;  ///< tried on formulas
+constexpr int kStates = 96;     ///< at which a formula is tried
+constexpr double kExact = 1e-9;
+
+/// True for a formula whose law stays the same when pressures and its parameters scale, at states
+/// all over its signals' ranges.
 bool scales(const plant_sim::formula::FormulaView& formula, const std::vector<double>& values) {
-  constexpr double kScale = 1.7;
-  constexpr int kStates = 96;
-  constexpr double kExact = 1e-9;
   const std::optional<double> power = power_of(formula);
   if (!power) return false;
   std::vector<double> scaled = values;

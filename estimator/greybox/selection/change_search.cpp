@@ -264,12 +264,17 @@ double gained_nats(const ChangeSearch& search) {
 
 }  // namespace
 
-bool motion_explains_more(const InnovationStage& stage) {
-  double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
+double change_nats(const InnovationStage& stage) {
+  double most_nats = likeliest_jump(stage).gain_nats;
   for (const ChangeScore& score : change_scores(stage)) {
     const bool both = score.gain_nats > kChangeOfEffect * score.throughout_nats;
-    best_change = std::max(best_change, score.gain_nats + (both ? score.throughout_nats : 0.0));
+    most_nats = std::max(most_nats, score.gain_nats + (both ? score.throughout_nats : 0.0));
   }
+  return most_nats;
+}
+
+bool motion_explains_more(const InnovationStage& stage) {
+  const double best_change = std::max(kEvidence_nats, change_nats(stage));
   for (const CurveGain& curve : curve_gains(stage)) {
     if (curve.variable != "time" && curve.gain_nats > kMotionExplains * best_change) return true;
   }

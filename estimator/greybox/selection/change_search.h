@@ -13,6 +13,8 @@ namespace estimator::greybox::selection {
 
 /// True where a curve over the motion promises more than any change in time.
 [[nodiscard]] bool motion_explains_more(const InnovationStage& stage);
+/// Gain that the most promising change in time promises beside the stage, or a load that sets in.
+[[nodiscard]] double change_nats(const InnovationStage& stage);
 
 struct ChangeSearch {
   SearchContext context;  ///< the problem with the changes in its model

@@ -106,7 +106,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
     const double behind_nats = 0.5 * (penalised(found[i]) - penalised(final));
     if (!(behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats)) return;
     InnovationStage polished = settled(plain, found[i].model, found[i].noise, kMostTurns, width);
-    if (polished.minus_two_log < found[i].minus_two_log) found[i] = std::move(polished);
+    if (penalised(polished) < penalised(found[i])) found[i] = std::move(polished);
   });
   std::erase_if(found, [&](const InnovationStage& other) {
     return !std::isfinite(other.minus_two_log) ||

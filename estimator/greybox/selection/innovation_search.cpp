@@ -40,7 +40,7 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   InnovationStage other = settled(context, held, stage.noise, 1, width);
   if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return;
   InnovationStage turned = settled(context, other.model, other.noise, kMostTurns, width);
-  if (turned.minus_two_log < other.minus_two_log) other = std::move(turned);
+  if (penalised(turned) < penalised(other)) other = std::move(turned);
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   if (!effect_out_of_range(other).empty()) return;
   InnovationCandidate candidate;
@@ -103,7 +103,7 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
       continue;
     InnovationStage polished =
         settled(context, best->model, best->noise, kMostTurns, wide(context.options.threads));
-    if (polished.minus_two_log < best->minus_two_log) *best = std::move(polished);
+    if (penalised(polished) < penalised(*best)) *best = std::move(polished);
     InnovationCandidate candidate;
     candidate.effect = best->model.added.back();
     candidate.settled = true;
@@ -135,7 +135,7 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
   reconsider_sites(context, stage);
   InnovationStage polished =
       settled(context, stage.model, stage.noise, kMostTurns, wide(context.options.threads));
-  if (polished.minus_two_log < stage.minus_two_log) stage = std::move(polished);
+  if (penalised(polished) < penalised(stage)) stage = std::move(polished);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/alternative_refinements.h"
+#include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/revived_refinements.h"
 
 namespace estimator::greybox::selection {
@@ -153,7 +154,7 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
     }
     estimate_noise();
     refit(plain, stage, i == 0, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
-    const double gain = best.minus_two_log - stage.minus_two_log;
+    const double gain = penalised(best) - penalised(stage);
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;
     if (i + 1 < turns) {

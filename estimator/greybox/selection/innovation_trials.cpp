@@ -116,6 +116,14 @@ double expected_nats(const InnovationStage& stage, const ScreeningResult& screen
   return 0.5 * (1.0 - ratio * ratio) * squares_and_priors(stage);
 }
 
+double promised_nats(const InnovationStage& stage) {
+  double most_nats = 0.0;
+  for (const ScreeningResult& effect : screened_effects(stage)) {
+    if (!effect.starts.empty()) most_nats = std::max(most_nats, expected_nats(stage, effect));
+  }
+  return most_nats;
+}
+
 std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   const SearchContext& context = stage.context;
   const double floor_m = context.problem.data.noise_floor_m;

@@ -45,6 +45,9 @@ struct InnovationTrial {
 /// Gain that a screened effect promises beside the stage.
 [[nodiscard]] double expected_nats(const InnovationStage& stage, const ScreeningResult& screened);
 
+/// Gain that the most promising effect promises; 0: none.
+[[nodiscard]] double promised_nats(const InnovationStage& stage);
+
 /// The most promising effects, fitted with the stage's gains.
 [[nodiscard]] std::vector<InnovationTrial> effect_trials(const InnovationStage& stage);
 

@@ -16,10 +16,12 @@ struct Law {
   std::vector<std::string> variables;  ///< "y", "v", "u", "speed", "direction", "pressure"
 };
 
-/// Laws of the dictionary: those that are held against named effects; with them those of the level
-/// of a friction, which stand beside it; with these the forms that come near to effects of the
-/// library, for records that no effect explains.
-enum class LawChoice { against_effects, beside_effects, unexplained };
+/// Laws of the dictionary; each choice has those of the one before.
+enum class LawChoice {
+  against_effects,  ///< in the place of named effects
+  beside_effects,   ///< also laws of a friction's level, which stand beside it
+  unexplained       ///< also forms that come near to named effects: no effect explains the record
+};
 
 /// Those that the plant has a site for, their sizes scaled to the rig. A law whose name the model
 /// has given to a formula of its own is left out.

@@ -36,12 +36,12 @@ std::vector<Law> laws_at(const SearchContext& context, const std::string& site, 
   return dictionary;
 }
 
-/// The laws of `search` by what they promise beside the stage, the most promising first.
-std::vector<ScreeningResult> screened_laws(const SearchContext& search, InnovationStage& stage) {
+/// The stage with the laws of `search` as its candidates.
+InnovationStage with_candidates(InnovationStage stage, const SearchContext& search) {
   stage.context.problem.model = search.problem.model;
   stage.context.problem.candidate_effects = search.problem.candidate_effects;
   stage.context.problem.trial_sizes = search.problem.trial_sizes;
-  return screened_effects(stage);
+  return stage;
 }
 
 /// False where no law is better by kRivals_nats in the place of what was found: beside it a law is
@@ -49,11 +49,11 @@ std::vector<ScreeningResult> screened_laws(const SearchContext& search, Innovati
 /// effect are counted; several with names are kept where a law is no likelier than they, inexact
 /// as their models are.
 bool promises(const SearchContext& search, const InnovationSearch& named) {
-  InnovationStage stage = named.final;
+  const InnovationStage stage = with_candidates(named.final, search);
   const std::size_t with_effect = stage.model.fitted.parameters.size();
   const std::size_t own = with_effect - named.before.model.fitted.parameters.size();
   const bool alone = stage.model.added.size() == 1;
-  const std::vector<ScreeningResult> screened = screened_laws(search, stage);
+  const std::vector<ScreeningResult> screened = screened_effects(stage);
   return std::any_of(screened.begin(), screened.end(), [&](const ScreeningResult& law) {
     if (law.starts.empty()) return false;
     const std::size_t count = law.starts.front().parameters.size() - with_effect;
@@ -80,12 +80,7 @@ double friction_level_nats(const SearchContext& context, const InnovationStage& 
   if (!rubs(context, stage.model.added)) return 0.0;
   const std::vector<Law> levels = laws_at(context, "dry_friction", LawChoice::beside_effects);
   if (levels.empty() || context.cancelled()) return 0.0;
-  InnovationStage with_levels = stage;
-  double most_nats = 0.0;
-  for (const ScreeningResult& law : screened_laws(with_laws(context, levels, {}), with_levels)) {
-    if (!law.starts.empty()) most_nats = std::max(most_nats, expected_nats(with_levels, law));
-  }
-  return most_nats;
+  return promised_nats(with_candidates(stage, with_laws(context, levels, {})));
 }
 
 bool law_promises(const SearchContext& context, const std::string& site,

@@ -17,9 +17,9 @@ namespace {
 /// Size of a law over its standard error, from which on it is learned.
 constexpr double kClearOfError = 3.0;
 
-/// Effects beside which much physics is missing, from which on laws are tried in their place, and
-/// the most laws and effects that are tried then.
+/// Effects beside which much physics is missing, from which on laws of any kind are tried early.
 constexpr std::size_t kBeforeLaws = 2;
+/// Most laws and effects together that an early search tries.
 constexpr std::size_t kMostEarly = 3;
 
 /// How a law enters, in the words of a Localisation.
@@ -130,7 +130,11 @@ bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
                      double inexact_nats) {
   // parameters may differ between records, and change within one, before a law is missing
   if (context.problem.data.fitted_records != 1) return false;
-  if (friction_level_nats(context, stage) > kCurve_nats + inexact_nats) return true;
+  const double level_nats = friction_level_nats(context, stage);
+  if (level_nats > kCurve_nats + inexact_nats && level_nats > promised_nats(stage) &&
+      level_nats > change_nats(stage)) {
+    return true;
+  }
   return stage.model.added.size() >= kBeforeLaws && leaves_much_physics(stage, inexact_nats) &&
          motion_explains_more(stage);
 }

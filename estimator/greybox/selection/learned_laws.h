@@ -12,9 +12,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
                               const ModelStage& likeliest, Diagnosis& result);
 
-/// True for a single record of which a law of the level of the stage's friction promises to explain
-/// more, or, beside several effects, a curve over the motion much more, and more than any change in
-/// time. `inexact_nats`: gains that inexact models of what was explained may owe.
+/// True for a single record where a law of the level of the stage's friction promises more than a
+/// remainder, any effect and any change in time; or where, beside several effects, a curve over the
+/// motion promises much, and more than any change. `inexact_nats`: gains that inexact models of
+/// what was explained may owe.
 [[nodiscard]] bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
                                    double inexact_nats);
 

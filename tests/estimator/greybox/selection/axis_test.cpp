@@ -220,7 +220,8 @@ TEST(AxisFriction, TurnsGradually) {
   }
 }
 
-// What a law of the level promises decides whether laws are sought before further effects.
+// Laws are sought before further effects where one of the level of friction promises more than a
+// remainder.
 TEST(AxisFriction, LeavesSomethingToALawOfItsLevelWhereItChangesAlongTheStroke) {
   for (const double slope_per_m : {0.0, 4.0}) {
     const auto rub_N = [&](double v_mps, double y_m) {
