@@ -23,9 +23,10 @@ constexpr double kConstantsOfRamp = 2.5;
 constexpr double kRange = 2.3;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// A time within the record, counted from `start_s` so that difference quotients take one sample.
+/// A time within the record, counted from `start_s` so that difference quotients take a tenth of a
+/// sample: a stiff rig answers a step within one.
 FreeParameter time_parameter(const std::string& name, double start_s, const Dataset& record) {
-  const double unit_s = 1000.0 * record.sample_time_s;
+  const double unit_s = 100.0 * record.sample_time_s;
   FreeParameter time{name, ParameterScale::linear, unit_s};
   time.origin = start_s;
   time.lower = time.to_theta(record.t_s.front());

@@ -13,6 +13,8 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
+/// The same where an error remains, which the standard errors take for noise.
+constexpr double kStandardErrorsBesideRemainder = 3.0;
 constexpr double kMostOfRemainder = 0.5;
 /// Probability that the best of all candidates gains by chance as much as an effect beside others,
 /// above which this is not established.
@@ -129,8 +131,19 @@ bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect)
   return 1.0 - curve.explained_ratio < left_ratio;
 }
 
-bool is_clear_of_error(const ParameterValue& p) {
-  return !p.at_bound && std::abs(p.value) > kStandardErrors * p.std_error;
+double least_standard_errors(const Diagnosis& diagnosis) {
+  return diagnosis.verdict == Verdict::unexplained ? kStandardErrorsBesideRemainder
+                                                   : kStandardErrors;
+}
+
+bool is_clear_of_error(const ParameterValue& p, double standard_errors) {
+  return !p.at_bound && std::abs(p.value) > standard_errors * p.std_error;
+}
+
+/// True for two numbers of one quantity; two ratios are two quantities.
+bool shares_unit(const ParameterValue& one, const ParameterValue& other) {
+  const std::string unit = config::units::unit_of(one.name);
+  return one.name == other.name || (!unit.empty() && config::units::unit_of(other.name) == unit);
 }
 
 /// Doubt by the effect's size, its first parameter. Where that is zero or within its error, a
@@ -138,14 +151,13 @@ bool is_clear_of_error(const ParameterValue& p) {
 /// falls while it slides.
 std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
   const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
+  const double least = least_standard_errors(diagnosis);
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
-  if (size == diagnosis.parameters.end() || is_clear_of_error(*size)) return {};
-  const std::string unit = config::units::unit_of(size->name);
-  const bool refined =
-      (size->value == 0.0 || !size->at_bound) &&
-      std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
-        return is_own(p) && config::units::unit_of(p.name) == unit && is_clear_of_error(p);
-      });
+  if (size == diagnosis.parameters.end() || is_clear_of_error(*size, least)) return {};
+  const bool refined = (size->value == 0.0 || !size->at_bound) &&
+                       std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
+                         return is_own(p) && shares_unit(*size, p) && is_clear_of_error(p, least);
+                       });
   if (refined) return {};
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;
 }
@@ -156,9 +168,8 @@ bool is_beyond_sense(const Diagnosis& diagnosis, const std::string& effect) {
   const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
   if (size == diagnosis.parameters.end()) return false;
-  const std::string unit = config::units::unit_of(size->name);
   return std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
-    return is_own(p) && config::units::unit_of(p.name) == unit && p.at_bound && p.value != 0.0;
+    return is_own(p) && shares_unit(*size, p) && p.at_bound && p.value != 0.0;
   });
 }
 

@@ -10,6 +10,8 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/drift_starts.h"
 #include "estimator/greybox/selection/effects_beside_change.h"
+#include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/innovation_trials.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -81,6 +83,18 @@ void prefer_effects(const SearchContext& context, const ModelStage& first, Chang
   changes.explaining = others.explaining;
 }
 
+/// Takes changes beside the model as given, `result.search`, where they leave less than `most_m`.
+bool take_early(const SearchContext& context, const ModelStage& first, ChangeSearch& changes,
+                double most_m, Diagnosis& result) {
+  Diagnosis without = begun(result);
+  without.search = result.search;
+  conclude(context, context, without);
+  Diagnosis dated = result;
+  if (!take_changes(first, changes, without, dated) || !(dated.rms_after_m < most_m)) return false;
+  result = std::move(dated);
+  return true;
+}
+
 /// True where a change is that of a parameter among the drifts'.
 bool has_one_of(const std::vector<ChangeProposal>& drifts,
                 const std::vector<ParameterChange>& changes) {
@@ -119,14 +133,28 @@ bool date_drifts(const SearchContext& context, const ModelStage& first, double m
   FoundChanges changes = search_changes(context, first, ChangesSought::before_laws, drifts);
   prefer_effects(context, first, ChangesSought::before_laws, changes);
   if (!changes.explaining || !has_one_of(drifts, changes.explaining->changes)) return false;
-  Diagnosis without = begun(result);
-  without.search = result.search;
-  conclude(context, context, without);
-  Diagnosis dated = result;
-  if (!take_changes(first, *changes.explaining, without, dated) || !(dated.rms_after_m < most_m))
+  return take_early(context, first, *changes.explaining, most_m, result);
+}
+
+bool date_promising_changes(const SearchContext& context, const ModelStage& first,
+                            const ModelStage& held, Diagnosis& result) {
+  if (context.problem.data.records.size() != 1 || context.cancelled()) return false;
+  const auto settled_beside = [&](const ModelStage& model) {
+    return settled(context, model, {}, kMostTurns, wide(context.options.threads));
+  };
+  const InnovationStage stage = settled_beside(first);
+  if (!std::isfinite(stage.minus_two_log) || motion_explains_more(stage)) return false;
+  const double promise_nats = change_nats(stage);
+  if (!(promise_nats > kCurve_nats) || !(promise_nats > promised_nats(stage))) return false;
+  FoundChanges changes = search_changes(context, first, ChangesSought::before_laws);
+  prefer_effects(context, first, ChangesSought::before_laws, changes);
+  if (!changes.explaining || context.cancelled()) return false;
+  const double least = held.added.empty()
+                           ? penalised(stage)
+                           : std::min(penalised(stage), penalised(settled_beside(held)));
+  if (!(penalised(changes.explaining->innovations.final) + 2.0 * kRivals_nats < least))
     return false;
-  result = std::move(dated);
-  return true;
+  return take_early(context, first, *changes.explaining, held.fitted.validation_rms_m, result);
 }
 
 }  // namespace estimator::greybox::selection

@@ -181,14 +181,26 @@ bool leaves_physics_to_simulations(const SearchContext& context, const ModelStag
   return left.physics_missing() && !leaves_a_line(fitted, left);
 }
 
-/// The beginning of a search by simulations, with a second effect too where the first leaves more.
-SearchStart begin_search(const SearchContext& context) {
-  SearchStart start = start_search(context);
+/// Dates changes that promise more than effects, from the first effect of a search on.
+bool find_change(const SearchContext& search, const SearchStart& start, Diagnosis& result) {
+  const ModelStage& held = start.branch.stage;
+  if (search.problem.effects_only || is_explained(search, held)) return false;
+  result.search = abandon_search(search, start);
+  return date_promising_changes(search, start.first, held, result);
+}
+
+/// Adds a second effect where the first leaves more.
+void continue_search(const SearchContext& context, SearchStart& start) {
   const SearchBranch& branch = start.branch;
   if (branch.stage.added.size() == 1 && !branch.stalled &&
       leaves_physics_to_simulations(context, branch.stage)) {
     add_second_effect(context, start);
   }
+}
+
+SearchStart begin_search(const SearchContext& context) {
+  SearchStart start = start_search(context);
+  continue_search(context, start);
   return start;
 }
 
@@ -241,6 +253,52 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   if (result.verdict == Verdict::nothing_missing && !search.cancelled() &&
       drifts(result, search.problem.data)) {
     (void)date_changes(search, first, likeliest, result);
+  }
+}
+
+/// Seeks effects from the first on, then what else explains the record. `context` may get another
+/// command or wider ranges.
+void seek_effects(SearchContext& context, SearchContext search, SearchStart start,
+                  Diagnosis& result) {
+  continue_search(search, start);
+  if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
+    const CommandLead lead = find_command_lead(search, start.branch.stage);
+    if (lead.samples > 0.0 && !context.cancelled()) {
+      advance_command(context.problem.data, lead.samples);
+      context.problem.interpolated_nats = lead.gain_nats;
+      search = for_search(context);
+      start = begin_search(search);
+      result.command_lead_samples = lead.samples;
+    }
+  }
+  if (widen_file_values(search, start, context.problem)) search = for_search(context);
+  if (start.branch.stage.added.size() > 1 &&
+      leaves_physics_to_simulations(search, start.branch.stage)) {
+    prefer_pair(search, start);
+  }
+  const ModelStage first = start.first;
+  if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
+    result.checks = check_records(search, first.fitted.validation_rms_m);
+  }
+  ModelStage likeliest;
+  if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
+  const bool wrong_record = result.checks && result.checks->misread();
+  if (context.cancelled()) {
+    result.search = conclude_search(search, std::move(start));
+    conclude(context, search, result);
+  } else if (wrong_record) {
+    result.search = abandon_search(search, start);
+    conclude(context, search, result);
+  } else if (leaves_noise(search, start.branch.stage)) {
+    result.search = complete_search(search, std::move(start));
+    conclude(context, search, result);
+  } else if (!find_drift(search, start, result)) {
+    weigh_innovations(context, search, std::move(start), result, likeliest);
+  }
+  if (!wrong_record && !context.problem.effects_only)
+    look_beyond_effects(search, first, likeliest, result);
+  if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
+    result.plants = fit_other_plants(search);
   }
 }
 
@@ -313,44 +371,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     return result;
   }
   SearchContext search = for_search(context);
-  SearchStart start = begin_search(search);
-  if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
-    const CommandLead lead = find_command_lead(search, start.branch.stage);
-    if (lead.samples > 0.0 && !context.cancelled()) {
-      advance_command(context.problem.data, lead.samples);
-      context.problem.interpolated_nats = lead.gain_nats;
-      search = for_search(context);
-      start = begin_search(search);
-      result.command_lead_samples = lead.samples;
-    }
-  }
-  if (widen_file_values(search, start, context.problem)) search = for_search(context);
-  if (start.branch.stage.added.size() > 1 &&
-      leaves_physics_to_simulations(search, start.branch.stage)) {
-    prefer_pair(search, start);
-  }
-  const ModelStage first = start.first;
-  if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
-    result.checks = check_records(search, first.fitted.validation_rms_m);
-  }
-  ModelStage likeliest;
+  SearchStart start = start_search(search);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
-  const bool wrong_record = result.checks && result.checks->misread();
-  if (context.cancelled()) {
-    result.search = conclude_search(search, std::move(start));
-    conclude(context, search, result);
-  } else if (wrong_record) {
-    result.search = abandon_search(search, start);
-    conclude(context, search, result);
-  } else if (leaves_noise(search, start.branch.stage)) {
-    result.search = complete_search(search, std::move(start));
-    conclude(context, search, result);
-  } else if (!find_drift(search, start, result)) {
-    weigh_innovations(context, search, std::move(start), result, likeliest);
-  }
-  if (!wrong_record && !problem.effects_only) look_beyond_effects(search, first, likeliest, result);
-  if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
-    result.plants = fit_other_plants(search);
+  if (!find_change(search, start, result)) {
+    seek_effects(context, std::move(search), std::move(start), result);
   }
   weigh_doubts(result);
   result.runtime_s =

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "estimator/greybox/selection/change_scores.h"
+#include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -222,6 +223,59 @@ TEST(Changes, SeveralRecordsHaveNoCommonTime) {
                              context.problem.data.records.front()};
   context.problem.data = fit_dataset(twice, {});
   EXPECT_FALSE(search_changes(context, first_stage(context)).explaining.has_value());
+}
+
+// A difference quotient over a whole sample stops short of the time, and a second change makes up
+// for that.
+TEST(Changes, ALoadThatStepsIsDatedFromWithinItsSample) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=chirp,length_s=15,left_out=load_step,left_out.size=240,left_out.where=7.0036", 23);
+  std::optional<ChangeSearch> found = search_changes(context, first_stage(context)).explaining;
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  EXPECT_EQ(found->changes.front().parameter, "load_force.force_N");
+  EXPECT_NEAR(found->changes.front().at_s, 7.0036, 0.0005);
+  const std::string at = "change.load_force.force_N.at_s";
+  InnovationStage early = found->innovations.final;
+  FitSummary& fitted = early.model.fitted;
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    if (p.name == at) fitted.theta[static_cast<Eigen::Index>(i)] = p.to_theta(7.0022);
+  }
+  const InnovationStage again =
+      settled(found->context, early.model, early.noise, 1, wide(context.options.threads));
+  EXPECT_NEAR(again.model.fitted.value(at), 7.0036, 0.0002);
+}
+
+Diagnosis begun_with(const SearchContext& context, const ModelStage& first) {
+  Diagnosis d;
+  d.noise_floor_m = context.problem.data.noise_floor_m;
+  d.search.path = {first};
+  d.search.final = first;
+  return d;
+}
+
+TEST(Changes, AGainThatDriftsIsDatedBeforeEffectsAreSoughtBesideTheFirst) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=chirp,length_s=15,left_out=gain_drift,left_out.size=0.06", 29);
+  const ModelStage first = first_stage(context);
+  Diagnosis d = begun_with(context, first);
+  ASSERT_TRUE(date_promising_changes(context, first, first, d));
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().kind, ChangeKind::ramp);
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+}
+
+TEST(Changes, AreNotDatedEarlyWhereAnEffectPromisesMore) {
+  for (const char* hidden : {"friction.coulomb_N=120", "spool_rate_limit.rate_mps=0.004"}) {
+    const SearchContext context =
+        diagnose_test::context_of(std::string("motion=chirp,length_s=10,") + hidden, 37);
+    const ModelStage first = first_stage(context);
+    Diagnosis d = begun_with(context, first);
+    EXPECT_FALSE(date_promising_changes(context, first, first, d)) << hidden;
+    EXPECT_THAT(d.changing, IsEmpty());
+  }
 }
 
 TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {

@@ -146,6 +146,17 @@ TEST(Confidence, NothingIsLearnedWhereALawIsNotEstablished) {
   }
 }
 
+TEST(Confidence, WhereAnErrorRemainsASizeIsClearAtThreeStandardErrors) {
+  Diagnosis d = unexplained();
+  d.parameters[3].value = 2.5 * d.parameters[3].std_error;
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.verdict = Verdict::missing;
+  EXPECT_THAT(named(d), IsEmpty());
+  d.verdict = Verdict::unexplained;
+  d.parameters[3].value = 3.5 * d.parameters[3].std_error;
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {
   Diagnosis d = unexplained();
   d.parameters[1].at_bound = true;
@@ -164,6 +175,17 @@ TEST(Confidence, AnEffectWhoseRefinementIsClearIsEstablishedWithoutItsFirstSize)
   EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
   d.parameters[2] = {"friction.static_N", 21.0, 12.0, false};
   EXPECT_THAT(named(d), ElementsAre("friction within_error", "backlash within_error"));
+}
+
+TEST(Confidence, AClearDampingRatioDoesNotEstablishASecondMassWithinItsError) {
+  Diagnosis d = unexplained();
+  d.verdict = Verdict::missing;
+  d.missing = {"friction", "second_mass"};
+  d.parameters = {{"friction.coulomb_N", 150.0, 4.0, false},
+                  {"second_mass.mass_ratio", 4.2e-4, 4.2e-4, false},
+                  {"second_mass.resonance_Hz", 10.9, 0.02, false},
+                  {"second_mass.damping_ratio", 0.007, 0.002, false}};
+  EXPECT_THAT(named(d), ElementsAre("second_mass within_error"));
 }
 
 TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
