@@ -10,7 +10,6 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/drift_starts.h"
 #include "estimator/greybox/selection/effects_beside_change.h"
-#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 
 namespace estimator::greybox::selection {
@@ -136,24 +135,20 @@ bool date_drifts(const SearchContext& context, const ModelStage& first, double m
   return take_early(context, first, *changes.explaining, most_m, result);
 }
 
-bool date_promising_changes(const SearchContext& context, const ModelStage& first,
-                            const ModelStage& held, Diagnosis& result) {
-  if (context.problem.data.records.size() != 1 || context.cancelled()) return false;
-  const auto settled_beside = [&](const ModelStage& model) {
-    return settled(context, model, {}, kMostTurns, wide(context.options.threads));
-  };
-  const InnovationStage stage = settled_beside(first);
-  if (!std::isfinite(stage.minus_two_log) || motion_explains_more(stage)) return false;
-  const double promise_nats = change_nats(stage);
-  if (!(promise_nats > kCurve_nats) || !(promise_nats > promised_nats(stage))) return false;
+bool date_changes_early(const SearchContext& context, const ModelStage& first,
+                        const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   FoundChanges changes = search_changes(context, first, ChangesSought::before_laws);
   prefer_effects(context, first, ChangesSought::before_laws, changes);
   if (!changes.explaining || context.cancelled()) return false;
-  const double least = held.added.empty()
-                           ? penalised(stage)
-                           : std::min(penalised(stage), penalised(settled_beside(held)));
-  if (!(penalised(changes.explaining->innovations.final) + 2.0 * kRivals_nats < least))
+  const double enough = penalised(changes.explaining->innovations.final) + 2.0 * kRivals_nats;
+  const auto is_likelier_than = [&](const InnovationStage& other) {
+    return enough < penalised(other);
+  };
+  if (!is_likelier_than(stage)) return false;
+  if (!held.added.empty() &&
+      !is_likelier_than(settled(context, held, {}, kMostTurns, wide(context.options.threads)))) {
     return false;
+  }
   return take_early(context, first, *changes.explaining, held.fitted.validation_rms_m, result);
 }
 

@@ -17,10 +17,11 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool date_drifts(const SearchContext& context, const ModelStage& first, double most_m,
                                Diagnosis& result);
 
-/// The same for changes that promise more than any effect and any law, before a second effect is
+/// The same for changes beside the model as given, settled in `stage`, before a second effect is
 /// sought: where they explain the record and are clearly likelier than `held`, the first effect's
 /// model by simulations.
-[[nodiscard]] bool date_promising_changes(const SearchContext& context, const ModelStage& first,
-                                          const ModelStage& held, Diagnosis& result);
+[[nodiscard]] bool date_changes_early(const SearchContext& context, const ModelStage& first,
+                                      const InnovationStage& stage, const ModelStage& held,
+                                      Diagnosis& result);
 
 }  // namespace estimator::greybox::selection

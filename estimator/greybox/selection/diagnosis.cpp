@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
+#include "estimator/greybox/selection/explained_beyond_effects.h"
 #include "estimator/greybox/selection/file_values.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
@@ -179,14 +180,6 @@ bool leaves_physics_to_simulations(const SearchContext& context, const ModelStag
   if (!std::isfinite(left.final.minus_two_log)) return true;
   weigh_remainder(fitted, left);
   return left.physics_missing() && !leaves_a_line(fitted, left);
-}
-
-/// Dates changes that promise more than effects, from the first effect of a search on.
-bool find_change(const SearchContext& search, const SearchStart& start, Diagnosis& result) {
-  const ModelStage& held = start.branch.stage;
-  if (search.problem.effects_only || is_explained(search, held)) return false;
-  result.search = abandon_search(search, start);
-  return date_promising_changes(search, start.first, held, result);
 }
 
 /// Adds a second effect where the first leaves more.
@@ -373,7 +366,8 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   SearchContext search = for_search(context);
   SearchStart start = start_search(search);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
-  if (!find_change(search, start, result)) {
+  result.search = abandon_search(search, start);
+  if (!explain_beyond_effects(search, start.first, start.branch.stage, result)) {
     seek_effects(context, std::move(search), std::move(start), result);
   }
   weigh_doubts(result);

@@ -83,6 +83,12 @@ double friction_level_nats(const SearchContext& context, const InnovationStage& 
   return promised_nats(with_candidates(stage, with_laws(context, levels, {})));
 }
 
+double law_nats(const SearchContext& context, const InnovationStage& stage) {
+  const std::vector<Law> laws = laws_at(context, "", LawChoice::against_effects);
+  if (laws.empty() || context.cancelled()) return 0.0;
+  return promised_nats(with_candidates(stage, with_laws(context, laws, {})));
+}
+
 bool law_promises(const SearchContext& context, const std::string& site,
                   const InnovationSearch& named) {
   const std::vector<Law> dictionary = laws_at(context, site, LawChoice::against_effects);

@@ -26,6 +26,9 @@ struct LawSearch {
 [[nodiscard]] double friction_level_nats(const SearchContext& context,
                                          const InnovationStage& stage);
 
+/// The same for laws of every kind that may stand in an effect's place.
+[[nodiscard]] double law_nats(const SearchContext& context, const InnovationStage& stage);
+
 /// True where a law promises something beside the effects found, without which it cannot be clearly
 /// better in their place. `site` as in search_laws().
 [[nodiscard]] bool law_promises(const SearchContext& context, const std::string& site,

@@ -21,9 +21,10 @@ namespace estimator::greybox::selection {
 
 /// Takes one law or two, with effects of `stage` up to three in all, where they explain the record
 /// that may teach one early: sooner than learn_laws(), which waits for all that effects may
-/// explain. `stage`: effects that leave much unexplained; `held`: the best of a search by
-/// simulations; the laws have to be likelier than either. Laws that come near to named effects are
-/// not tried. False: `result` is as before.
+/// explain. `stage`: the model as given, or with effects that leave much unexplained; `held`: the
+/// best of a search by simulations; the laws have to be likelier than either, and than any one
+/// effect where `stage` has none. Laws that come near to named effects are not tried. False:
+/// `result` is as before.
 [[nodiscard]] bool learn_law_early(const SearchContext& context, const ModelStage& first,
                                    const InnovationStage& stage, const ModelStage& held,
                                    Diagnosis& result);

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "estimator/greybox/selection/change_scores.h"
-#include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -245,37 +244,6 @@ TEST(Changes, ALoadThatStepsIsDatedFromWithinItsSample) {
   const InnovationStage again =
       settled(found->context, early.model, early.noise, 1, wide(context.options.threads));
   EXPECT_NEAR(again.model.fitted.value(at), 7.0036, 0.0002);
-}
-
-Diagnosis begun_with(const SearchContext& context, const ModelStage& first) {
-  Diagnosis d;
-  d.noise_floor_m = context.problem.data.noise_floor_m;
-  d.search.path = {first};
-  d.search.final = first;
-  return d;
-}
-
-TEST(Changes, AGainThatDriftsIsDatedBeforeEffectsAreSoughtBesideTheFirst) {
-  const SearchContext context = diagnose_test::context_of(
-      "motion=chirp,length_s=15,left_out=gain_drift,left_out.size=0.06", 29);
-  const ModelStage first = first_stage(context);
-  Diagnosis d = begun_with(context, first);
-  ASSERT_TRUE(date_promising_changes(context, first, first, d));
-  EXPECT_EQ(d.verdict, Verdict::changing);
-  ASSERT_THAT(d.changing, SizeIs(1));
-  EXPECT_EQ(d.changing.front().kind, ChangeKind::ramp);
-  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
-}
-
-TEST(Changes, AreNotDatedEarlyWhereAnEffectPromisesMore) {
-  for (const char* hidden : {"friction.coulomb_N=120", "spool_rate_limit.rate_mps=0.004"}) {
-    const SearchContext context =
-        diagnose_test::context_of(std::string("motion=chirp,length_s=10,") + hidden, 37);
-    const ModelStage first = first_stage(context);
-    Diagnosis d = begun_with(context, first);
-    EXPECT_FALSE(date_promising_changes(context, first, first, d)) << hidden;
-    EXPECT_THAT(d.changing, IsEmpty());
-  }
 }
 
 TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
