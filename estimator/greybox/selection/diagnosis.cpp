@@ -129,10 +129,13 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     return;
   }
   extend_search(search, start);
-  // Prefers the model that leaves less, of equals the likelier.
+  // Prefers the model that leaves less; of equals, neither of which explains the record, that of
+  // fewer effects, and then the likelier.
   const auto leaves_more = [&](const ModelStage& stage) {
+    const bool simpler = stage.added.size() < innovations.final.model.added.size();
     return !is_explained(search, stage) &&
-           (1.0 - kRivals) * held.validation_rms_m < stage.fitted.validation_rms_m;
+           (simpler ? 1.0 + kRivals : 1.0 - kRivals) * held.validation_rms_m <
+               stage.fitted.validation_rms_m;
   };
   if (leaves_more(start.branch.stage)) {
     take_innovations();

@@ -23,6 +23,9 @@ constexpr std::size_t kFirstPoints = 8;
 /// Numbers of points of the likeliest of these, then twice as many as long as the most do best.
 constexpr std::initializer_list<std::size_t> kFurtherPoints = {5, 14};
 constexpr std::size_t kMostPoints = 28;
+/// Share of what the first curve leaves that one through more points has to undercut, where it
+/// leaves much: otherwise something else is missing too.
+constexpr double kHardlyLess = 0.75;
 /// Share of the samples beyond either end of a curve.
 constexpr double kSparse = 0.002;
 /// A force of typical size as a share of the rig's greatest; a gain's share.
@@ -232,6 +235,10 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   std::vector<Attempt> attempts = first_attempts(context, stage);
   fit_attempts(context, stage, 0, attempts);
   if (attempts.empty()) return {};
+  // what leaves more than it gains is no law of the variable
+  const InnovationStage& first = attempts.front().stage;
+  const double first_left_nats = largest_curve_nats(first);
+  if (first_left_nats > 0.5 * (penalised(stage) - penalised(first))) return {};
   const Place place = attempts.front().place;
   const auto try_counts = [&](std::initializer_list<std::size_t> counts) {
     const std::size_t tried = attempts.size();
@@ -242,6 +249,10 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
     fit_attempts(context, stage, tried, attempts);
   };
   try_counts(kFurtherPoints);
+  const InnovationStage& best = attempts.front().stage;
+  if (leaves_much_physics(best, 0.0) && largest_curve_nats(best) > kHardlyLess * first_left_nats) {
+    return {};
+  }
   std::size_t most = std::max(kFurtherPoints);
   while (most < kMostPoints && !context.cancelled() && points(attempts.front()) == most) {
     most *= 2;
