@@ -10,7 +10,7 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/drift_starts.h"
 #include "estimator/greybox/selection/effects_beside_change.h"
-#include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/innovation_search.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -139,14 +139,8 @@ bool date_changes_early(const SearchContext& context, const ModelStage& first,
                         const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   FoundChanges changes = search_changes(context, first, ChangesSought::before_laws);
   prefer_effects(context, first, ChangesSought::before_laws, changes);
-  if (!changes.explaining || context.cancelled()) return false;
-  const double enough = penalised(changes.explaining->innovations.final) + 2.0 * kRivals_nats;
-  const auto is_likelier_than = [&](const InnovationStage& other) {
-    return enough < penalised(other);
-  };
-  if (!is_likelier_than(stage)) return false;
-  if (!held.added.empty() &&
-      !is_likelier_than(settled(context, held, {}, kMostTurns, wide(context.options.threads)))) {
+  if (!changes.explaining || context.cancelled() ||
+      !is_clearly_likelier(context, changes.explaining->innovations.final, stage, held)) {
     return false;
   }
   return take_early(context, first, *changes.explaining, held.fitted.validation_rms_m, result);

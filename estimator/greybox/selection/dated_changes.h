@@ -19,7 +19,7 @@ namespace estimator::greybox::selection {
 
 /// The same for changes beside the model as given, settled in `stage`, before a second effect is
 /// sought: where they explain the record and are clearly likelier than `held`, the first effect's
-/// model by simulations.
+/// model by simulations, and than any one effect.
 [[nodiscard]] bool date_changes_early(const SearchContext& context, const ModelStage& first,
                                       const InnovationStage& stage, const ModelStage& held,
                                       Diagnosis& result);

@@ -277,7 +277,6 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
   ModelStage likeliest;
-  if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   const bool wrong_record = result.checks && result.checks->misread();
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));

@@ -178,6 +178,25 @@ SearchContext without_holdouts(SearchContext context) {
   return context;
 }
 
+bool is_clearly_likelier(const SearchContext& context, const InnovationStage& found,
+                         const InnovationStage& stage, const ModelStage& held) {
+  const double enough = penalised(found) + 2.0 * kRivals_nats;
+  if (!(enough < penalised(stage))) return false;
+  if (stage.model.added.empty()) {
+    const double gained_nats = 0.5 * (penalised(stage) - enough);
+    const std::vector<InnovationTrial> effects = effect_trials(stage);
+    if (std::any_of(effects.begin(), effects.end(), [&](const InnovationTrial& effect) {
+          return effect.candidate.gain_nats > gained_nats;
+        })) {
+      return false;
+    }
+  }
+  if (held.added.empty()) return true;
+  const InnovationStage other = settled(without_holdouts(context), held, stage.noise, kMostTurns,
+                                        wide(context.options.threads));
+  return enough < penalised(other);
+}
+
 InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
                                     const SearchBranch& held, const SearchLimits& limits) {
   const SearchContext context = without_holdouts(with_holdouts);

@@ -73,6 +73,12 @@ struct SearchLimits {
   std::function<bool(const InnovationStage&, double inexact_nats)> ends_at;
 };
 
+/// True where `found` is likelier, by kRivals_nats, than `stage`, than `held`, the best model of a
+/// search by simulations, and, where `stage` has no effects, than it with any of them, each fitted
+/// with the stage's gains.
+[[nodiscard]] bool is_clearly_likelier(const SearchContext& context, const InnovationStage& found,
+                                       const InnovationStage& stage, const ModelStage& held);
+
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
 /// the best that it has found: this is taken where its likelihood is the higher one. Records that
 /// only score take no part.

@@ -235,7 +235,7 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   std::vector<Attempt> attempts = first_attempts(context, stage);
   fit_attempts(context, stage, 0, attempts);
   if (attempts.empty()) return {};
-  // what leaves more than it gains is no law of the variable
+  // a curve that leaves more than it gains is no law of its variable
   const InnovationStage& first = attempts.front().stage;
   const double first_left_nats = largest_curve_nats(first);
   if (first_left_nats > 0.5 * (penalised(stage) - penalised(first))) return {};

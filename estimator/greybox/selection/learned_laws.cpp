@@ -101,14 +101,6 @@ bool take_better(const SearchContext& context, const ModelStage& first,
   return true;
 }
 
-/// True where an effect, fitted with the stage's gains, gains as much.
-bool effect_gains(const InnovationStage& stage, double gain_nats) {
-  const std::vector<InnovationTrial> trials = effect_trials(stage);
-  return std::any_of(trials.begin(), trials.end(), [&](const InnovationTrial& trial) {
-    return trial.candidate.gain_nats > gain_nats;
-  });
-}
-
 }  // namespace
 
 bool learn_laws(const SearchContext& context, const ModelStage& first, const ModelStage& likeliest,
@@ -151,16 +143,7 @@ bool learn_law_early(const SearchContext& context, const ModelStage& first,
                      const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   const std::optional<LawSearch> found =
       search_laws(context, first, "", stage.model.added, LawChoice::beside_effects, kMostEarly);
-  if (!found) return false;
-  const double enough = penalised(found->innovations.final) + 2.0 * kRivals_nats;
-  if (!(enough < penalised(stage))) return false;
-  const double gained_nats = 0.5 * (penalised(stage) - enough);
-  if (stage.model.added.empty() && effect_gains(stage, gained_nats)) return false;
-  if (!held.added.empty()) {
-    const InnovationStage other = settled(without_holdouts(context), held, stage.noise, kMostTurns,
-                                          wide(context.options.threads));
-    if (!(enough < penalised(other))) return false;
-  }
+  if (!found || !is_clearly_likelier(context, found->innovations.final, stage, held)) return false;
   Diagnosis named = result;
   named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
   named.whole = places_of(context, first);

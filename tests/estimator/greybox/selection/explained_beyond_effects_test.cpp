@@ -14,7 +14,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// What explains the record before an effect has been added; none: nothing.
+/// The diagnosis by changes or laws, before an effect has been added; none: they explain nothing.
 std::optional<Diagnosis> explained(const std::string& spec, bool effects_only = false) {
   SearchContext context = diagnose_test::context_of(spec, 29);
   context.problem.effects_only = effects_only;
