@@ -41,7 +41,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   const std::vector<std::string>& added = found.innovations.final.model.added;
   const auto is_change = [](const std::string& name) { return name.starts_with("change."); };
   if (std::all_of(added.begin(), added.end(), is_change)) {
-    found.context.problem.candidate_effects.clear();  // none of them explains the record
+    found.context.problem.candidate_effects.clear();  // none of them alone explains the record
   }
   for (const std::string& name : added) {
     if (is_change(name)) found.innovations.rivals[name] = {};  // these are the change's own

@@ -17,9 +17,9 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool date_drifts(const SearchContext& context, const ModelStage& first, double most_m,
                                Diagnosis& result);
 
-/// The same for changes beside the model as given, settled in `stage`, before a second effect is
-/// sought: where they explain the record and are clearly likelier than `held`, the first effect's
-/// model by simulations, and than any one effect.
+/// Takes changes beside the model as given, settled in `stage`, before a second effect is sought:
+/// where they explain the record and are clearly likelier than `held`, the first effect's model by
+/// simulations, and than any one effect. False: `result` is as before.
 [[nodiscard]] bool date_changes_early(const SearchContext& context, const ModelStage& first,
                                       const InnovationStage& stage, const ModelStage& held,
                                       Diagnosis& result);

@@ -36,7 +36,7 @@ constexpr double kPeriodsOfDrift = 4.0;
 /// Share of the error from which on another beginning of the search leaves far less.
 constexpr double kFarLess = 0.5;
 
-/// Searches for laws before all effects have been tried, each beside others.
+/// Searches for laws before all effects have been tried, each beside other effects than before.
 constexpr std::size_t kMostEarlySearches = 2;
 
 /// The search without its effects, where these leave a simulation worse on held-out data: what the

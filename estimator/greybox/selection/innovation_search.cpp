@@ -11,6 +11,7 @@
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/rig_scale.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 
@@ -29,6 +30,8 @@ constexpr double kInterpolated = 0.02;
 /// Most turns of the base, by which all candidates are judged: where a disturbance is far above the
 /// sensor's noise, each turn brings it and the plant's parameters apart by a part of the way.
 constexpr int kBaseTurns = 25;
+/// Effects with which a change or a law found early is compared.
+constexpr std::size_t kComparedEffects = 2;
 /// Fastest speed over the RMS of the motion's.
 constexpr double kFastest = 3.0;
 
@@ -178,23 +181,29 @@ SearchContext without_holdouts(SearchContext context) {
   return context;
 }
 
-bool is_clearly_likelier(const SearchContext& context, const InnovationStage& found,
+bool is_clearly_likelier(const SearchContext& with_holdouts, const InnovationStage& found,
                          const InnovationStage& stage, const ModelStage& held) {
+  const SearchContext context = without_holdouts(with_holdouts);
   const double enough = penalised(found) + 2.0 * kRivals_nats;
   if (!(enough < penalised(stage))) return false;
+  std::vector<ModelStage> others;
+  if (!held.added.empty()) others.push_back(held);
   if (stage.model.added.empty()) {
-    const double gained_nats = 0.5 * (penalised(stage) - enough);
-    const std::vector<InnovationTrial> effects = effect_trials(stage);
-    if (std::any_of(effects.begin(), effects.end(), [&](const InnovationTrial& effect) {
-          return effect.candidate.gain_nats > gained_nats;
-        })) {
-      return false;
+    std::vector<InnovationTrial> effects = effect_trials(stage);
+    sort_by_gain(effects);
+    effects.resize(std::min(effects.size(), kComparedEffects));
+    for (InnovationTrial& effect : effects) {
+      for (ModelStage& start : effect.starts) others.push_back(std::move(start));
     }
   }
-  if (held.added.empty()) return true;
-  const InnovationStage other = settled(without_holdouts(context), held, stage.noise, kMostTurns,
-                                        wide(context.options.threads));
-  return enough < penalised(other);
+  std::vector<double> costs(others.size());
+  in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
+    // with the lines that were seen beside what was found
+    costs[i] = penalised(
+        settled(context, std::move(others[i]), found.noise, kMostTurns, SimulationWidth{}));
+  });
+  return !context.cancelled() &&
+         std::all_of(costs.begin(), costs.end(), [&](double cost) { return enough < cost; });
 }
 
 InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,

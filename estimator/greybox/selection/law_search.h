@@ -26,7 +26,8 @@ struct LawSearch {
 [[nodiscard]] double friction_level_nats(const SearchContext& context,
                                          const InnovationStage& stage);
 
-/// The same for laws of every kind that may stand in an effect's place.
+/// Gain that the most promising of the laws that may stand in an effect's place promises beside the
+/// stage, without the penalty for its parameters; 0 where none does, or cancelled.
 [[nodiscard]] double law_nats(const SearchContext& context, const InnovationStage& stage);
 
 /// True where a law promises something beside the effects found, without which it cannot be clearly

@@ -234,7 +234,7 @@ std::size_t points(const Attempt& attempt) { return attempt.effect.curve->x.size
 std::optional<Attempt> likeliest(const SearchContext& context, const InnovationStage& stage) {
   std::vector<Attempt> attempts = first_attempts(context, stage);
   fit_attempts(context, stage, 0, attempts);
-  if (attempts.empty()) return {};
+  if (attempts.empty() || context.cancelled()) return {};
   // a curve that leaves more than it gains is no law of its variable
   const InnovationStage& first = attempts.front().stage;
   const double first_left_nats = largest_curve_nats(first);

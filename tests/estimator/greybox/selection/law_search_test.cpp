@@ -164,6 +164,24 @@ TEST(Laws, NoLawIsLearnedEarlyWhereEffectsExplainTheRecord) {
   EXPECT_EQ(right.diagnosis.verdict, Verdict::nothing_missing);
 }
 
+// A supply that droops in the place of the quadratic damping that is missing.
+TEST(Laws, AModelIsClearlyLikelierOnlyWhereNoEffectAndNoOtherSearchComesNear) {
+  const std::string damping =
+      "motion=multisine,length_s=8,quadratic_damping.coefficient_N_s2_per_m2=40000";
+  const FewEffects wrong = searched_with({"supply_droop"}, damping);
+  const FewEffects right = searched_with({"quadratic_damping"}, damping);
+  ASSERT_THAT(wrong.found.final.model.added, ElementsAre("supply_droop"));
+  ASSERT_THAT(right.found.final.model.added, ElementsAre("quadratic_damping"));
+  const InnovationStage stage = settled(wrong.context, first_stage(wrong.context), {}, 1, {});
+  EXPECT_FALSE(is_clearly_likelier(wrong.context, stage, stage, {}));
+  EXPECT_FALSE(is_clearly_likelier(wrong.context, wrong.found.final, stage, {}));
+  InnovationStage alone = stage;
+  alone.context.problem.candidate_effects.clear();
+  EXPECT_TRUE(is_clearly_likelier(wrong.context, wrong.found.final, alone, {}));
+  EXPECT_FALSE(
+      is_clearly_likelier(wrong.context, wrong.found.final, alone, right.found.final.model));
+}
+
 TEST(Laws, ALawCompetesWithTheEffectThatPassesForIt) {
   const FewEffects cubic =
       searched_with({"quadratic_damping"},
