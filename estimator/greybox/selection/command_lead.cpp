@@ -6,6 +6,7 @@
 
 #include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -30,6 +31,14 @@ std::array<double, 4> mean_weights(double x) {
           (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 + (3.0 * x - 2.0) / 24.0,
           -(x + 1.0) * x * (x - 2.0) / 2.0 + (1.0 - 3.0 * x) / 24.0,
           (x + 1.0) * x * (x - 1.0) / 6.0 + x / 24.0};
+}
+
+/// True where the model as given leaves more with the lead than without.
+bool leaves_more(const SearchContext& context, const ModelStage& first, double lead_samples) {
+  SearchContext earlier = context;
+  advance_command(earlier.problem.data, lead_samples);
+  return first_stage(earlier).fitted.validation_rms_m >
+         (1.0 + kRivals) * first.fitted.validation_rms_m;
 }
 
 }  // namespace
@@ -60,7 +69,8 @@ void advance_command(FitDataset& data, double lead_samples) {
   }
 }
 
-CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage) {
+CommandLead find_command_lead(const SearchContext& context, const ModelStage& first,
+                              const ModelStage& stage) {
   const std::vector<Dataset>& records = context.problem.data.records;
   const bool one_rate = std::all_of(records.begin(), records.end(), [&](const Dataset& record) {
     return record.sample_time_s == records.front().sample_time_s;
@@ -96,6 +106,7 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
     return {};
   }
   const double lead_samples = kLeads_samples[static_cast<std::size_t>(best - fits.begin())];
+  if (!stage.added.empty() && leaves_more(context, first, lead_samples)) return {};
   if (lead_samples == std::floor(lead_samples)) return {lead_samples, 0.0};
   return {lead_samples, context.problem.data.all_mask.sum() *
                             std::log(stage.fitted.validation_rms_m / best->validation_rms_m)};

@@ -25,8 +25,10 @@ struct CommandLead {
 };
 
 /// The lead with which the stage's model leaves much less of the error, if any; none for records of
-/// several rates.
-[[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage);
+/// several rates. With it the model as given, `first`, may not leave more than without: a lead that
+/// an effect has to make up for is no fault of the log.
+[[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& first,
+                                            const ModelStage& stage);
 
 /// True where the noise floor is low enough to show an interpolated command: that of a slow log,
 /// taken from positions far apart, is too high.

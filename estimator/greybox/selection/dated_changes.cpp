@@ -15,6 +15,9 @@
 namespace estimator::greybox::selection {
 namespace {
 
+/// Standard errors beyond which a value differs from that before a change.
+constexpr double kOwnErrors = 2.0;
+
 /// The error goes with the time, which comes first; the change that explains it is its place.
 void locate_change(std::vector<Localisation>& where) {
   std::stable_partition(where.begin(), where.end(),
@@ -33,6 +36,21 @@ void take_final_errors(Diagnosis& changed) {
     error_of(change.parameter, change.from_error);
     error_of("change." + change.parameter + ".value", change.to_error);
   }
+}
+
+/// True where a value after a change is one to state: within its range, and further from that
+/// before than its own error. What of the error goes with the value before moves both alike.
+bool is_stated(const ParameterChange& change, const std::vector<ParameterValue>& parameters) {
+  const auto after = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) {
+    return p.name == "change." + change.parameter + ".value";
+  });
+  if (after == parameters.end()) return true;
+  if (after->at_bound) return after->value == 0.0;
+  if (!std::isfinite(change.to_error)) return true;
+  const double ratio = change.from == 0.0 ? 1.0 : std::abs(change.to / change.from);
+  const double shared = std::isfinite(change.from_error) ? change.from_error * ratio : 0.0;
+  const double own = std::sqrt(std::max(0.0, std::pow(change.to_error, 2) - std::pow(shared, 2)));
+  return std::abs(change.to - change.from) > kOwnErrors * own;
 }
 
 /// True where the changes found explain the record and leave clearly less than `before`.
@@ -59,6 +77,11 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   });
   changed.changing = found.changes;
   take_final_errors(changed);
+  if (!std::all_of(
+          changed.changing.begin(), changed.changing.end(),
+          [&](const ParameterChange& change) { return is_stated(change, changed.parameters); })) {
+    return false;
+  }
   changed.where = before.where;
   changed.where_is_whole = true;
   locate_change(changed.where);

@@ -200,6 +200,18 @@ SearchStart begin_search(const SearchContext& context) {
   return start;
 }
 
+/// Searches again with the command earlier where that leaves much less, in samples; 0: it does not.
+double take_command_lead(SearchContext& context, SearchContext& search, SearchStart& start) {
+  if (is_explained(search, start.branch.stage) && floor_shows_lead(search.problem.data)) return 0.0;
+  const CommandLead lead = find_command_lead(search, start.first, start.branch.stage);
+  if (!(lead.samples > 0.0) || context.cancelled()) return 0.0;
+  advance_command(context.problem.data, lead.samples);
+  context.problem.interpolated_nats = lead.gain_nats;
+  search = for_search(context);
+  start = begin_search(search);
+  return lead.samples;
+}
+
 /// Searches again with wider ranges where the file's values strain and that leaves far less, or
 /// noise; true where the problem has changed.
 bool widen_file_values(const SearchContext& search, SearchStart& start, DiagnosisProblem& problem) {
@@ -257,16 +269,7 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
 void seek_effects(SearchContext& context, SearchContext search, SearchStart start,
                   Diagnosis& result) {
   continue_search(search, start);
-  if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
-    const CommandLead lead = find_command_lead(search, start.branch.stage);
-    if (lead.samples > 0.0 && !context.cancelled()) {
-      advance_command(context.problem.data, lead.samples);
-      context.problem.interpolated_nats = lead.gain_nats;
-      search = for_search(context);
-      start = begin_search(search);
-      result.command_lead_samples = lead.samples;
-    }
-  }
+  result.command_lead_samples = take_command_lead(context, search, start);
   if (widen_file_values(search, start, context.problem)) search = for_search(context);
   if (start.branch.stage.added.size() > 1 &&
       leaves_physics_to_simulations(search, start.branch.stage)) {

@@ -25,12 +25,13 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   if (!std::isfinite(stage.minus_two_log)) return false;
   const double by_effects_nats = std::max(kCurve_nats, promised_nats(stage));
   const double by_changes_nats = change_nats(stage);
-  if (by_changes_nats > by_effects_nats && !motion_explains_more(stage)) {
-    return date_changes_early(context, first, stage, held, result);
-  }
   const double by_laws_nats = law_nats(context, stage);
-  return by_laws_nats > std::max(by_effects_nats, by_changes_nats) &&
-         learn_law_early(context, first, stage, held, result);
+  if (by_laws_nats > std::max(by_effects_nats, by_changes_nats) &&
+      learn_law_early(context, first, stage, held, result)) {
+    return true;
+  }
+  return by_changes_nats > by_effects_nats && !motion_explains_more(stage) &&
+         date_changes_early(context, first, stage, held, result);
 }
 
 }  // namespace estimator::greybox::selection

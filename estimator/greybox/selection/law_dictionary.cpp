@@ -46,12 +46,12 @@ class Dictionary {
     add_commands();
     add_leakage();
     add_readings();
+    add_mount();
     if (choice != LawChoice::against_effects) add_friction_levels();
     if (choice == LawChoice::unexplained) {
       add_bent_forces();
       add_saturations();
       add_leakage_along_stroke();
-      add_mount();
     }
     return std::move(laws_);
   }

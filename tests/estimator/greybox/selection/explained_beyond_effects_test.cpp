@@ -50,6 +50,16 @@ TEST(ExplainedBeyondEffects, ALawIsLearned) {
   }
 }
 
+// On a chirp what goes with the acceleration goes with the time too.
+TEST(ExplainedBeyondEffects, AMountThatYieldsIsALawAndNoChange) {
+  const std::optional<Diagnosis> d =
+      explained("motion=chirp,length_s=15,left_out=mount_compliance,left_out.size=3e-5");
+  ASSERT_TRUE(d);
+  EXPECT_EQ(d->verdict, Verdict::learned);
+  ASSERT_THAT(d->laws, SizeIs(1));
+  EXPECT_EQ(d->laws.front().effect.name, "mount_compliance");
+}
+
 TEST(ExplainedBeyondEffects, NothingIsWhereAnEffectIsMissing) {
   for (const char* hidden : {"friction.coulomb_N=120", "spool_rate_limit.rate_mps=0.004",
                              "internal_leakage.conductance_m3ps_per_Pa=2e-12",
