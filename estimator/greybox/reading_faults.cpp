@@ -76,14 +76,19 @@ double resolution_m(const std::vector<double>& steps_m, double range_m) {
   return least_m;
 }
 
-/// True where the reading comes back to where it left, and no step of the command came before: a
+/// True where the reading comes back to where it left, or where the motion before it would have
+/// brought it, and no step of the command came before: a
 /// motion overshoots, and a jab is commanded. `usual_V`: usual largest step.
 bool is_no_motion(const Dataset& record, const SampleRange& span, const SampleRange& leap,
                   double usual_V) {
   if (leap.begin == span.begin || leap.end == span.end) return false;
   const double left_m = record.y_m[leap.begin - 1];
   const double away_m = std::abs(record.y_m[leap.begin] - left_m);
-  if (std::abs(record.y_m[leap.end] - left_m) > kComesBack * away_m) return false;
+  const double back_m = record.y_m[leap.end] - left_m;
+  // by then a motion has gone on as it did before
+  const double before_m = leap.begin > span.begin + 1 ? left_m - record.y_m[leap.begin - 2] : 0.0;
+  const double gone_m = static_cast<double>(leap.end - leap.begin + 1) * before_m;
+  if (std::min(std::abs(back_m), std::abs(back_m - gone_m)) > kComesBack * away_m) return false;
   const std::size_t from = std::max(span.begin + 1, leap.begin - std::min(leap.begin, kBefore));
   for (std::size_t k = from; k < leap.begin; ++k) {
     if (std::abs(record.u_V[k] - record.u_V[k - 1]) > kCommanded * usual_V) return false;

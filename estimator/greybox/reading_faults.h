@@ -19,10 +19,10 @@ struct ReadingFaults {
   std::vector<StuckReading> stuck;  ///< at the least value, at the greatest
 };
 
-/// A leap comes back to where it left within two samples, without a step of the command before it;
-/// the two outermost samples of a segment are not looked at. A reading counts as stuck where the
-/// command would move it by more than its resolution and a fiftieth of its range; none where speed
-/// and command hardly correlate.
+/// A leap comes back to where it left, or where the motion before it leads, within two samples,
+/// without a step of the command before it; the two outermost samples of a segment are not looked
+/// at. A reading counts as stuck where the command would move it by more than its resolution and a
+/// fiftieth of its range; none where speed and command hardly correlate.
 [[nodiscard]] ReadingFaults reading_faults(const Dataset& record);
 
 }  // namespace estimator::greybox

@@ -12,6 +12,22 @@
 #include "estimator/greybox/selection/learned_laws.h"
 
 namespace estimator::greybox::selection {
+namespace {
+
+/// Gain of an effect over the promise of a law or a change from which on these are not looked into:
+/// their linear estimates promise a half to a sixth of what they gain.
+constexpr double kFarMore = 6.0;
+
+/// Gain of the model that a search by simulations holds, with the stage's noise model renewed once.
+double gained_nats(const SearchContext& context, const InnovationStage& stage,
+                   const ModelStage& held) {
+  if (held.added.empty()) return 0.0;
+  const InnovationStage other =
+      settled(without_holdouts(context), held, stage.noise, 1, wide(context.options.threads));
+  return 0.5 * (penalised(stage) - penalised(other));
+}
+
+}  // namespace
 
 bool explain_beyond_effects(const SearchContext& context, const ModelStage& first,
                             const ModelStage& held, Diagnosis& result) {
@@ -26,12 +42,16 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   const double by_effects_nats = std::max(kCurve_nats, promised_nats(stage));
   const double by_changes_nats = change_nats(stage);
   const double by_laws_nats = law_nats(context, stage);
-  if (by_laws_nats > std::max(by_effects_nats, by_changes_nats) &&
-      learn_law_early(context, first, stage, held, result)) {
+  const bool law_first = by_laws_nats > std::max(by_effects_nats, by_changes_nats);
+  const bool change_first = by_changes_nats > by_effects_nats && !motion_explains_more(stage);
+  if ((!law_first && !change_first) ||
+      gained_nats(context, stage, held) > kFarMore * std::max(by_laws_nats, by_changes_nats)) {
+    return false;
+  }
+  if (law_first && learn_law_early(context, first, stage, held, result)) {
     return true;
   }
-  return by_changes_nats > by_effects_nats && !motion_explains_more(stage) &&
-         date_changes_early(context, first, stage, held, result);
+  return change_first && date_changes_early(context, first, stage, held, result);
 }
 
 }  // namespace estimator::greybox::selection

@@ -101,6 +101,23 @@ bool take_better(const SearchContext& context, const ModelStage& first,
   return true;
 }
 
+/// Seeks laws beside the effects and takes them as take_better does, where `accepts` allows it;
+/// where several are not all clear of their errors, fewer.
+template <class Accepts>
+bool seek_laws(const SearchContext& context, const ModelStage& first,
+               const std::vector<std::string>& effects, LawChoice choice, std::size_t most_effects,
+               Accepts&& accepts, Diagnosis& result) {
+  while (most_effects > 0) {
+    const std::optional<LawSearch> found =
+        search_laws(context, first, "", effects, choice, most_effects);
+    if (!found || !accepts(found->innovations.final)) return false;
+    if (take_better(context, first, found, result)) return true;
+    if (found->laws.size() < 2) return false;
+    most_effects = found->innovations.final.model.added.size() - 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool learn_laws(const SearchContext& context, const ModelStage& first, const ModelStage& likeliest,
@@ -112,11 +129,11 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, const Mod
   for (const std::string& name : likeliest.added) {
     if (std::find(effects.begin(), effects.end(), name) == effects.end()) effects.push_back(name);
   }
-  if (take_better(
-          context, first,
-          search_laws(context, first, "", effects, LawChoice::unexplained, kMostInnovationEffects),
-          result))
+  if (seek_laws(
+          context, first, effects, LawChoice::unexplained, kMostInnovationEffects,
+          [](const InnovationStage&) { return true; }, result)) {
     return true;
+  }
   // a curve is more than a formula has to say: it comes last
   if (take_better(context, first, search_curve(context, first), result)) return true;
   const auto beside = [&](const ModelStage& base) {
@@ -141,13 +158,16 @@ bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
 
 bool learn_law_early(const SearchContext& context, const ModelStage& first,
                      const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
-  const std::optional<LawSearch> found =
-      search_laws(context, first, "", stage.model.added, LawChoice::beside_effects, kMostEarly);
-  if (!found || !is_clearly_likelier(context, found->innovations.final, stage, held)) return false;
   Diagnosis named = result;
   named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
   named.whole = places_of(context, first);
-  if (!take_better(context, first, found, named)) return false;
+  const auto is_likelier = [&](const InnovationStage& found) {
+    return is_clearly_likelier(context, found, stage, held);
+  };
+  if (!seek_laws(context, first, stage.model.added, LawChoice::beside_effects, kMostEarly,
+                 is_likelier, named)) {
+    return false;
+  }
   result = std::move(named);
   return true;
 }

@@ -135,6 +135,30 @@ TEST(ReadingFaults, ALeapIsFoundUpToTheThirdSampleOfASegment) {
   }
 }
 
+/// Steps of 1 mm between turns every second, as fast as the rod ever moves.
+Dataset sawtooth() {
+  std::vector<double> u_V(2000);
+  std::vector<double> y_m(2000, 0.2);
+  for (std::size_t k = 1; k < y_m.size(); ++k) {
+    u_V[k] = (k / 200) % 2 == 0 ? 1.0 : -1.0;
+    y_m[k] = y_m[k - 1] + 1e-3 * u_V[k];
+  }
+  return dataset_of(0.005, u_V, y_m);
+}
+
+// Within the two samples the rod moves by more than a quarter of the leap.
+TEST(ReadingFaults, ALeapOutOfAFastMotionIsFound) {
+  EXPECT_TRUE(reading_faults(sawtooth()).leaps.empty());
+  for (const double leap_m : {5e-3, -5e-3}) {
+    Dataset leaping = sawtooth();
+    leaping.y_m[500] += leap_m;
+    const ReadingFaults faults = reading_faults(leaping);
+    ASSERT_EQ(faults.leaps.size(), 1U) << leap_m;
+    EXPECT_EQ(faults.leaps.front().begin, 500U);
+    EXPECT_EQ(faults.leaps.front().end, 501U);
+  }
+}
+
 TEST(ReadingFaults, TwoSamplesThatLeapAreOneLeap) {
   Dataset leaping = record();
   leaping.y_m[1500] = 9.99;
