@@ -77,8 +77,8 @@ double resolution_m(const std::vector<double>& steps_m, double range_m) {
 }
 
 /// True where the reading comes back to where it left, or where the motion before it would have
-/// brought it, and no step of the command came before: a
-/// motion overshoots, and a jab is commanded. `usual_V`: usual largest step.
+/// brought it, and no step of the command came before: a motion overshoots, and a jab is commanded.
+/// `usual_V`: usual largest step.
 bool is_no_motion(const Dataset& record, const SampleRange& span, const SampleRange& leap,
                   double usual_V) {
   if (leap.begin == span.begin || leap.end == span.end) return false;

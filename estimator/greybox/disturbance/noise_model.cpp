@@ -26,7 +26,8 @@ constexpr double kMostWalk_ratio = 150.0;
 /// Turns of the corner frequency over the longest record: a slower force is a constant to it.
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
-/// Least sensor's noise over the floor, which takes a resonance near half the sampling rate for it.
+/// Least sensor noise over the floor: the floor counts a resonance near half the sampling rate as
+/// noise.
 constexpr double kLeastSensor_ratio = 0.05;
 /// Greatest disturbance, in those that move the rod by the sensor's noise within a second.
 constexpr double kMostDisturbance_units = 1e8;

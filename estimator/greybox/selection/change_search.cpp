@@ -24,7 +24,6 @@ constexpr double kEnds = 0.01;
 /// Samples about a change within which a load that sets in is the change's: a model that brings the
 /// gain before the lag instead of behind it is late by the lag.
 constexpr double kEdge_samples = 10.0;
-constexpr double kClearErrors = 2.0;
 /// Twice the gain over a ramp from which on an exponential that has not settled is no ramp.
 constexpr double kNoRamp_nats = 20.0 * kEvidence_nats;
 /// Time constants after which an exponential has settled.

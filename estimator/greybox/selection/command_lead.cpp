@@ -37,8 +37,8 @@ std::array<double, 4> mean_weights(double x) {
 bool leaves_more(const SearchContext& context, const ModelStage& first, double lead_samples) {
   SearchContext earlier = context;
   advance_command(earlier.problem.data, lead_samples);
-  return first_stage(earlier).fitted.validation_rms_m >
-         (1.0 + kRivals) * first.fitted.validation_rms_m;
+  return !(first_stage(earlier).fitted.validation_rms_m <=
+           (1.0 + kRivals) * first.fitted.validation_rms_m);
 }
 
 }  // namespace

@@ -15,9 +15,6 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Standard errors beyond which a value differs from that before a change.
-constexpr double kOwnErrors = 2.0;
-
 /// The error goes with the time, which comes first; the change that explains it is its place.
 void locate_change(std::vector<Localisation>& where) {
   std::stable_partition(where.begin(), where.end(),
@@ -38,19 +35,20 @@ void take_final_errors(Diagnosis& changed) {
   }
 }
 
-/// True where a value after a change is one to state: within its range, and further from that
-/// before than its own error. What of the error goes with the value before moves both alike.
+/// True where the value after a change is within its range and differs clearly from that before. An
+/// error of the scale, which both values share by their ratio, moves them alike and does not count.
 bool is_stated(const ParameterChange& change, const std::vector<ParameterValue>& parameters) {
   const auto after = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) {
     return p.name == "change." + change.parameter + ".value";
   });
-  if (after == parameters.end()) return true;
-  if (after->at_bound) return after->value == 0.0;
-  if (!std::isfinite(change.to_error)) return true;
-  const double ratio = change.from == 0.0 ? 1.0 : std::abs(change.to / change.from);
-  const double shared = std::isfinite(change.from_error) ? change.from_error * ratio : 0.0;
-  const double own = std::sqrt(std::max(0.0, std::pow(change.to_error, 2) - std::pow(shared, 2)));
-  return std::abs(change.to - change.from) > kOwnErrors * own;
+  if (after != parameters.end() && after->at_bound) return after->value == 0.0;
+  // a held gain has no error before the change
+  const double before = std::isfinite(change.from_error) ? change.from_error : 0.0;
+  const bool scales = std::abs(change.from) > kClearErrors * before;
+  const double shared = scales ? before * std::abs(change.to / change.from) : 0.0;
+  const double own = scales ? std::sqrt(std::abs(std::pow(change.to_error, 2) - shared * shared))
+                            : std::hypot(before, change.to_error);
+  return std::abs(change.to - change.from) > kClearErrors * own;
 }
 
 /// True where the changes found explain the record and leave clearly less than `before`.

@@ -19,7 +19,7 @@ namespace estimator::greybox::selection {
 
 /// Takes changes beside the model as given, settled in `stage`, before a second effect is sought:
 /// where they explain the record and are clearly likelier than `held`, the first effect's model by
-/// simulations, and than any one effect. False: `result` is as before.
+/// simulations, and than the two most promising effects. False: `result` is as before.
 [[nodiscard]] bool date_changes_early(const SearchContext& context, const ModelStage& first,
                                       const InnovationStage& stage, const ModelStage& held,
                                       Diagnosis& result);

@@ -200,7 +200,8 @@ SearchStart begin_search(const SearchContext& context) {
   return start;
 }
 
-/// Searches again with the command earlier where that leaves much less, in samples; 0: it does not.
+/// Searches again with the command earlier where that leaves much less. Returns the lead in
+/// samples, 0 for none.
 double take_command_lead(SearchContext& context, SearchContext& search, SearchStart& start) {
   if (is_explained(search, start.branch.stage) && floor_shows_lead(search.problem.data)) return 0.0;
   const CommandLead lead = find_command_lead(search, start.first, start.branch.stage);

@@ -19,11 +19,11 @@ namespace {
 constexpr double kFarMore = 6.0;
 
 /// Gain of the model that a search by simulations holds, with the stage's noise model renewed once.
-double gained_nats(const SearchContext& context, const InnovationStage& stage,
-                   const ModelStage& held) {
+double held_gain_nats(const SearchContext& context, const InnovationStage& stage,
+                      const ModelStage& held) {
   if (held.added.empty()) return 0.0;
   const InnovationStage other =
-      settled(without_holdouts(context), held, stage.noise, 1, wide(context.options.threads));
+      settled(context, held, stage.noise, 1, wide(context.options.threads));
   return 0.5 * (penalised(stage) - penalised(other));
 }
 
@@ -45,7 +45,7 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   const bool law_first = by_laws_nats > std::max(by_effects_nats, by_changes_nats);
   const bool change_first = by_changes_nats > by_effects_nats && !motion_explains_more(stage);
   if ((!law_first && !change_first) ||
-      gained_nats(context, stage, held) > kFarMore * std::max(by_laws_nats, by_changes_nats)) {
+      held_gain_nats(context, stage, held) > kFarMore * std::max(by_laws_nats, by_changes_nats)) {
     return false;
   }
   if (law_first && learn_law_early(context, first, stage, held, result)) {

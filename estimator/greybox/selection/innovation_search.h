@@ -74,8 +74,8 @@ struct SearchLimits {
 };
 
 /// True where `found` is likelier, by kRivals_nats, than `stage`, than `held`, the best model of a
-/// search by simulations, and, where `stage` has no effects, than it with the best of them. Each
-/// gets a noise model of its own, and the spectral lines of `found`.
+/// search by simulations, and, where `stage` has no effects, than it with the two most promising of
+/// them. `held` and these get noise models of their own, and the spectral lines of `found`.
 [[nodiscard]] bool is_clearly_likelier(const SearchContext& context, const InnovationStage& found,
                                        const InnovationStage& stage, const ModelStage& held);
 

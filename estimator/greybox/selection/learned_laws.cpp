@@ -102,11 +102,11 @@ bool take_better(const SearchContext& context, const ModelStage& first,
 }
 
 /// Seeks laws beside the effects and takes them as take_better does, where `accepts` allows it;
-/// where several are not all clear of their errors, fewer.
+/// where it does not take several, fewer.
 template <class Accepts>
 bool seek_laws(const SearchContext& context, const ModelStage& first,
                const std::vector<std::string>& effects, LawChoice choice, std::size_t most_effects,
-               Accepts&& accepts, Diagnosis& result) {
+               const Accepts& accepts, Diagnosis& result) {
   while (most_effects > 0) {
     const std::optional<LawSearch> found =
         search_laws(context, first, "", effects, choice, most_effects);
@@ -159,10 +159,11 @@ bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
 bool learn_law_early(const SearchContext& context, const ModelStage& first,
                      const InnovationStage& stage, const ModelStage& held, Diagnosis& result) {
   Diagnosis named = result;
-  named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
-  named.whole = places_of(context, first);
   const auto is_likelier = [&](const InnovationStage& found) {
-    return is_clearly_likelier(context, found, stage, held);
+    if (!is_clearly_likelier(context, found, stage, held)) return false;
+    named.rms_after_m = simulated(context, stage.model.fitted).validation_rms_m;
+    named.whole = places_of(context, first);
+    return true;
   };
   if (!seek_laws(context, first, stage.model.added, LawChoice::beside_effects, kMostEarly,
                  is_likelier, named)) {

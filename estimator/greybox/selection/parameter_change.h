@@ -17,6 +17,9 @@ enum class ChangeKind {
 /// "step", "ramp", "exponential", "record".
 [[nodiscard]] const char* to_string(ChangeKind kind);
 
+/// Standard errors from which on a value differs from that before a change.
+inline constexpr double kClearErrors = 2.0;
+
 struct ParameterChange {
   std::string parameter;  ///< "damping_N_s_per_m", "null_bias.offset_V"
   ChangeKind kind = ChangeKind::step;

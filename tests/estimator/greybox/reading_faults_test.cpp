@@ -149,7 +149,7 @@ Dataset sawtooth() {
 // Within the two samples the rod moves by more than a quarter of the leap.
 TEST(ReadingFaults, ALeapOutOfAFastMotionIsFound) {
   EXPECT_TRUE(reading_faults(sawtooth()).leaps.empty());
-  for (const double leap_m : {5e-3, -5e-3}) {
+  for (const double leap_m : {6e-3, -6e-3}) {
     Dataset leaping = sawtooth();
     leaping.y_m[500] += leap_m;
     const ReadingFaults faults = reading_faults(leaping);

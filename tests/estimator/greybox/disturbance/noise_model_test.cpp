@@ -46,6 +46,17 @@ TEST(NoiseModel, ARandomForceFarAboveTheSensorsNoiseIsMeasured) {
   EXPECT_LT(found.walk_m, 1e-7);
 }
 
+// Differences of the readings take a fast resonance for the sensor's noise.
+TEST(NoiseModel, TheSensorsNoiseIsFoundFarBelowAFloorThatIsTooHigh) {
+  selection::SearchContext context =
+      context_of("motion=multisine,length_s=20,outside.force_N=30,outside.corner_Hz=3", 45);
+  context.problem.data.noise_floor_m *= 6.0;
+  const selection::InnovationStage stage =
+      selection::settled(context, selection::first_stage(context), {}, 25, wide(2));
+  constexpr double kSensor_m = 2.46e-6;  // 2 um, and an encoder of 5 um
+  EXPECT_NEAR(stage.noise.noise.sensor_m, kSensor_m, 0.1 * kSensor_m);
+}
+
 TEST(NoiseModel, TheLikeliestOneDoesNotDependOnTheStart) {
   const selection::SearchContext context = context_of(
       "motion=multisine,length_s=20,outside.force_N=20,outside.corner_Hz=5,"

@@ -110,6 +110,9 @@ TEST(CommandLead, IsNoneWhereItLeavesMoreWithoutTheEffect) {
       3134110008);
   const SearchStart start = start_search(context);
   ASSERT_THAT(start.branch.stage.added, Contains("internal_leakage"));
+  ModelStage far = start.first;
+  far.fitted.validation_rms_m = 1.0;
+  EXPECT_EQ(find_command_lead(context, far, start.branch.stage).samples, 1.5);
   EXPECT_EQ(find_command_lead(context, start.first, start.branch.stage).samples, 0.0);
 }
 
