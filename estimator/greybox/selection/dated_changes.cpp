@@ -35,19 +35,18 @@ void take_final_errors(Diagnosis& changed) {
   }
 }
 
-/// True where the value after a change is within its range and differs clearly from that before. An
-/// error of the scale, which both values share by their ratio, moves them alike and does not count.
+/// True where the value after a change is within its range and differs from that before by more
+/// than its own error. What it shares with the error before, by the ratio of the two, moves both
+/// alike.
 bool is_stated(const ParameterChange& change, const std::vector<ParameterValue>& parameters) {
   const auto after = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) {
     return p.name == "change." + change.parameter + ".value";
   });
   if (after != parameters.end() && after->at_bound) return after->value == 0.0;
-  // a held gain has no error before the change
-  const double before = std::isfinite(change.from_error) ? change.from_error : 0.0;
-  const bool scales = std::abs(change.from) > kClearErrors * before;
-  const double shared = scales ? before * std::abs(change.to / change.from) : 0.0;
-  const double own = scales ? std::sqrt(std::abs(std::pow(change.to_error, 2) - shared * shared))
-                            : std::hypot(before, change.to_error);
+  if (!std::isfinite(change.to_error)) return true;  // not known, nor that it is large
+  const double ratio = change.from == 0.0 ? 1.0 : std::abs(change.to / change.from);
+  const double shared = std::isfinite(change.from_error) ? change.from_error * ratio : 0.0;
+  const double own = std::sqrt(std::max(0.0, std::pow(change.to_error, 2) - shared * shared));
   return std::abs(change.to - change.from) > kClearErrors * own;
 }
 
