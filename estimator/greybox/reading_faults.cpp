@@ -10,10 +10,8 @@
 namespace estimator::greybox {
 namespace {
 
-constexpr double kLeap = 0.005;  ///< least leap over the usual range
-/// Usual largest steps from sample to sample: where a sine of six samples a period turns, it is as
-/// far from the median.
-constexpr double kLeapInSteps = 0.5;
+constexpr double kLeap = 0.01;       ///< least leap over the usual range
+constexpr double kLeapInSteps = 3;   ///< usual largest steps from sample to sample
 constexpr double kLeapInTurns = 20;  ///< usual largest distances from the median of five
 constexpr double kMostLeaps = 0.01;  ///< share of the samples; more are a motion
 /// Share of the samples that are usual: a leap makes two steps.
@@ -161,13 +159,6 @@ std::vector<SampleRange> leaps_of(const Dataset& record, double range_m) {
       SampleRange leap{k, k};
       while (leap.end < span.end && turns_m[leap.end] > far_m) ++leap.end;
       k = std::max(leap.end, leap.begin + 1);
-      // two samples that leap move the median beside them
-      const double most_m =
-          *std::max_element(turns_m.begin() + static_cast<std::ptrdiff_t>(leap.begin),
-                            turns_m.begin() + static_cast<std::ptrdiff_t>(k));
-      const auto is_beside = [&](std::size_t i) { return turns_m[i] < kComesBack * most_m; };
-      while (leap.begin < leap.end && is_beside(leap.begin)) ++leap.begin;
-      while (leap.end > leap.begin && is_beside(leap.end - 1)) --leap.end;
       if (leap.end == leap.begin || !is_no_motion(record, span, leap, usual_V)) continue;
       samples += leap.end - leap.begin;
       leaps.push_back(leap);
