@@ -207,20 +207,6 @@ std::vector<Index> step_times(const Dataset& record) {
 
 }  // namespace
 
-const char* to_string(ChangeKind kind) {
-  switch (kind) {
-    case ChangeKind::ramp:
-      return "ramp";
-    case ChangeKind::exponential:
-      return "exponential";
-    case ChangeKind::record:
-      return "record";
-    case ChangeKind::step:
-      break;
-  }
-  return "step";
-}
-
 std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
   const FitDataset& data = stage.context.problem.data;
   if (data.records.size() != 1 || stage.model.fitted.jacobian.size() == 0) return {};

@@ -191,13 +191,6 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
   return found;
 }
 
-/// A held gain has no error before the change.
-bool is_clear_of_errors(const ParameterChange& change) {
-  const double from_error = std::isfinite(change.from_error) ? change.from_error : 0.0;
-  const double error = std::hypot(from_error, change.to_error);
-  return std::abs(change.to - change.from) > kClearErrors * error;
-}
-
 /// Held-out error of a simulation with the changes.
 double validation_rms_m(const ChangeSearch& search) {
   return simulated(search.context, search.innovations.final.model.fitted).validation_rms_m;

@@ -35,21 +35,6 @@ void take_final_errors(Diagnosis& changed) {
   }
 }
 
-/// True where the value after a change is within its range and differs from that before by more
-/// than its own error. What it shares with the error before, by the ratio of the two, moves both
-/// alike.
-bool is_stated(const ParameterChange& change, const std::vector<ParameterValue>& parameters) {
-  const auto after = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) {
-    return p.name == "change." + change.parameter + ".value";
-  });
-  if (after != parameters.end() && after->at_bound) return after->value == 0.0;
-  if (!std::isfinite(change.to_error)) return true;  // not known, nor that it is large
-  const double ratio = change.from == 0.0 ? 1.0 : std::abs(change.to / change.from);
-  const double shared = std::isfinite(change.from_error) ? change.from_error * ratio : 0.0;
-  const double own = std::sqrt(std::max(0.0, std::pow(change.to_error, 2) - shared * shared));
-  return std::abs(change.to - change.from) > kClearErrors * own;
-}
-
 /// True where the changes found explain the record and leave clearly less than `before`.
 bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis& before,
                   Diagnosis& result) {
@@ -74,9 +59,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   });
   changed.changing = found.changes;
   take_final_errors(changed);
-  if (!std::all_of(
-          changed.changing.begin(), changed.changing.end(),
-          [&](const ParameterChange& change) { return is_stated(change, changed.parameters); })) {
+  if (!std::all_of(changed.changing.begin(), changed.changing.end(), is_clear_of_errors)) {
     return false;
   }
   changed.where = before.where;

@@ -17,9 +17,6 @@ enum class ChangeKind {
 /// "step", "ramp", "exponential", "record".
 [[nodiscard]] const char* to_string(ChangeKind kind);
 
-/// Standard errors from which on a value differs from that before a change.
-inline constexpr double kClearErrors = 2.0;
-
 struct ParameterChange {
   std::string parameter;  ///< "damping_N_s_per_m", "null_bias.offset_V"
   ChangeKind kind = ChangeKind::step;
@@ -36,6 +33,11 @@ struct ParameterChange {
   /// Parameters whose change would explain the record about as well.
   std::vector<std::string> rivals{};
 };
+
+/// True where the value after a change is two standard errors from that before. A value at its
+/// bound has no error: only zero is one to state. An error of the scale moves both values by their
+/// ratio and does not count.
+[[nodiscard]] bool is_clear_of_errors(const ParameterChange& change);
 
 /// True where a parameter of the effect is among those that change.
 [[nodiscard]] inline bool changes_effect(const std::vector<ParameterChange>& changes,

@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/split_scatter.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -42,6 +43,15 @@ VectorXd half_of(const FitDataset& data, const VectorXd& weights, bool first) {
   return result;
 }
 
+/// True for a number of a change in time and for the parameter that changes: a half of the record
+/// knows its value on one side of the change alone.
+bool changes(const FitSummary& fitted, const std::string& name) {
+  const std::string own = "change." + name + ".";
+  return name.starts_with("change.") ||
+         std::any_of(fitted.parameters.begin(), fitted.parameters.end(),
+                     [&](const FreeParameter& p) { return p.name.starts_with(own); });
+}
+
 }  // namespace
 
 VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
@@ -61,6 +71,7 @@ VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
   VectorXd scatter = VectorXd::Zero(fitted.theta.size());
   if (context.cancelled()) return scatter;
   for (Index i = 0; i < scatter.size(); ++i) {
+    if (changes(fitted, fitted.parameters[static_cast<std::size_t>(i)].name)) continue;
     const double apart = std::abs(halves[0].theta[i] - halves[1].theta[i]);
     double expected = 0.0;  // a half that ends at a bound has no error
     for (const VectorXd& error : errors) {

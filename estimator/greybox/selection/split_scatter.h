@@ -9,7 +9,7 @@
 namespace estimator::greybox::selection {
 
 /// Half the distance of each theta's two values where that is more than twice what their own errors
-/// let expect; otherwise 0. `weights`: samples of the fit.
+/// let expect; otherwise 0, as where a parameter changes in time. `weights`: samples of the fit.
 [[nodiscard]] Eigen::VectorXd split_scatter(const SearchContext& context, const FitSummary& fitted,
                                             const Eigen::VectorXd& weights, double observer_per_s);
 

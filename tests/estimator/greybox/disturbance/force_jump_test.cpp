@@ -43,6 +43,9 @@ TEST(ForceJump, ADiagnosisSaysWhatSetInAndWhen) {
   EXPECT_NEAR(found.changing[0].at_s, 8.0, 0.02);
   EXPECT_NEAR(found.changing[0].to - found.changing[0].from, 300.0,
               3.0 * found.changing[0].to_error);
+  // each half of the record knows the load on one side of its change
+  EXPECT_LT(found.changing[0].from_error, 20.0);
+  EXPECT_LT(found.changing[0].at_error_s, 0.05);
   ASSERT_FALSE(found.where.empty());
   EXPECT_EQ(found.where[0].site, "force");
   EXPECT_EQ(found.where[0].variable, "time");
