@@ -191,8 +191,11 @@ std::string motion_words(const monitor::control::ReferenceConfig& reference, dou
 
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
                              double separation) {
-  return "Run " + motion + ": a wrong choice among " + config::schema::listed(names) +
-         " would then leave an error of about " + number(separation) + " times the noise.";
+  const std::vector<std::string> others(names.begin() + 1, names.end());
+  return "Run " + motion + ": " + names.front() + " in the place of " +
+         config::schema::listed(others, "or") +
+         ", or the other way round, would then leave an error of about " + number(separation) +
+         " times the noise.";
 }
 
 std::string words_for_sensor(const plant_sim::ModelFile& model,

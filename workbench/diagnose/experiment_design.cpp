@@ -36,19 +36,27 @@ std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
 using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
                               const greybox::FitSummary&);
 
-/// Separation of the closest pair, either way round, over what the truth itself leaves.
+/// Separation of the found effect, the first of the rivals, from the closest of the others, either
+/// way round, over what the truth itself leaves. Whether the others are told apart, of which one
+/// may contain another, does not make the found effect any surer.
 double closest(const selection::SearchContext& context,
                const std::vector<greybox::FitSummary>& rivals,
                const std::vector<greybox::FitDataset>& truths, Separation separation) {
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> own;
   for (std::size_t truth = 0; truth < truths.size(); ++truth) {
-    const double own = selection::own_separation(context, truths[truth], rivals[truth]);
-    if (!std::isfinite(own)) return 0.0;  // the truth itself cannot follow: nothing is told apart
-    for (std::size_t other = 0; other < rivals.size(); ++other) {
-      if (other == truth || context.cancelled()) continue;
-      least =
-          std::min(least, separation(context, truths[truth], rivals[other]) / std::max(own, 1.0));
-    }
+    own.push_back(selection::own_separation(context, truths[truth], rivals[truth]));
+    // a truth that cannot follow its own motion tells nothing apart
+    if (!std::isfinite(own.back())) return 0.0;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  const auto compare = [&](std::size_t truth, std::size_t other) {
+    if (context.cancelled()) return;
+    least = std::min(least,
+                     separation(context, truths[truth], rivals[other]) / std::max(own[truth], 1.0));
+  };
+  for (std::size_t other = 1; other < rivals.size(); ++other) {
+    compare(0, other);
+    compare(other, 0);
   }
   return least;
 }

@@ -2,8 +2,9 @@
 // would.
 //
 // Rivals explain a record about as well. On each motion that might separate them every rival in
-// turn is taken for the truth, simulated in closed loop, and the others are adjusted to it: the
-// motion on which even the closest pair stays furthest apart is advised.
+// turn is taken for the truth, simulated in closed loop, and the found effect and the others are
+// adjusted to it: the motion on which even the closest of the others stays furthest from the found
+// effect is advised.
 #pragma once
 
 #include <string>
@@ -25,7 +26,7 @@ struct Advice {
   std::string words;
 };
 
-/// `names` of the rivals, one for each. At least two rivals.
+/// `names` of the rivals, one for each, the found effect first. At least two rivals.
 [[nodiscard]] Advice advise(const selection::SearchContext& context,
                             const std::vector<greybox::FitSummary>& rivals,
                             const std::vector<std::string>& names);

@@ -72,9 +72,10 @@ TEST_F(SineWithAsymmetricFlow, IsExplainedAsWellByALoad) {
 TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
   EXPECT_TRUE(advice_->separates);
   EXPECT_GE(advice_->separation, kSeparates);
-  EXPECT_THAT(advice_->words,
-              AllOf(StartsWith("Run "), HasSubstr(advice_->motion.words), HasSubstr(" mm of "),
-                    HasSubstr("flow_asymmetry and load_force"), HasSubstr("times the noise")));
+  EXPECT_THAT(
+      advice_->words,
+      AllOf(StartsWith("Run "), HasSubstr(advice_->motion.words), HasSubstr(" mm of "),
+            HasSubstr("flow_asymmetry in the place of load_force,"), HasSubstr("times the noise")));
 }
 
 TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
@@ -84,6 +85,14 @@ TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
   const greybox::FitSummary wrong = fitted_with(again, "load_force");
   EXPECT_LT(right.validation_rms_m, 1.1 * again.problem.data.noise_floor_m);
   EXPECT_GT(wrong.validation_rms_m, 1.15 * right.validation_rms_m);
+}
+
+// A spring so long that it is a constant force is one of the others.
+TEST_F(SineWithAsymmetricFlow, IsToldFromRivalsOfWhichOneContainsAnother) {
+  const Advice advice = advise(*context_, {(*rivals_)[0], (*rivals_)[1], (*rivals_)[1]},
+                               {"flow_asymmetry", "load_force", "load_spring"});
+  EXPECT_TRUE(advice.separates);
+  EXPECT_THAT(advice.words, HasSubstr("in the place of load_force or load_spring,"));
 }
 
 TEST_F(SineWithAsymmetricFlow, IsAskedForASensorWhereTwoExplanationsAreOneEquation) {
