@@ -202,6 +202,11 @@ Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& da
   return models;
 }
 
+void score_every_sample(FitDataset& data) {
+  data.training_mask = data.all_mask;
+  data.validation_mask = data.all_mask;
+}
+
 InnovationData innovation_data(const plant_sim::ModelFile& model, const FitDataset& data,
                                const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                                const Linearisations& models, const NoiseModel& noise) {
@@ -216,8 +221,7 @@ InnovationData innovation_data(const plant_sim::ModelFile& model, const FitDatas
     result.log_determinant += gains.log_determinant;
     record.innovations = std::make_shared<const InnovationGains>(std::move(gains.gains));
   }
-  result.data.training_mask = data.all_mask;
-  result.data.validation_mask = data.all_mask;
+  score_every_sample(result.data);
   return result;
 }
 

@@ -47,6 +47,9 @@ struct InnovationData {
                                              const Eigen::VectorXd& theta,
                                              const Linearisations& models, const NoiseModel& noise);
 
+/// Every valid sample is fitted and scored, as innovations are.
+void score_every_sample(FitDataset& data);
+
 /// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must
 /// come from `noise`.
 void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,

@@ -139,7 +139,7 @@ class RoundTrials {
     InnovationCandidate& candidate = trials_[i].candidate;
     InnovationTrial unknown = trials_[i];
     if (candidate.settled) unknown.starts = {trials_[i].starts.back()};
-    InnovationStage reached = memo_.settled(plain_, stage_, unknown);
+    InnovationStage reached = settled(plain_, stage_, unknown);
     if (!(reached.minus_two_log < stages_[i].minus_two_log)) return;
     take(i, std::move(reached));
     candidate.settled = true;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/revived_refinements.h"
+#include "estimator/greybox/selection/settled_memo.h"
 
 namespace estimator::greybox::selection {
 
@@ -22,6 +25,9 @@ constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
 /// Lead in -2 log L that a fit from another start does not make up for after a quick look.
 constexpr double kFarBehind = 100.0;
+/// Difference in -2 log L from the fit that there is within which a quick look from another start
+/// has come to the same optimum.
+constexpr double kSameOptimum = 1.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
 /// ... and each parameter that one has more than the refinement whose place it takes. A shorter one
@@ -69,7 +75,9 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   const auto cost = [&](const FitSummary& fit) { return squares(fit, floor_m) + prior_cost(fit); };
   const auto try_other = [&](ParameterSubset start, double enough) {
     FitSummary other = fit_innovations(stage.context, start, width, InnovationFit::quick);
-    if (cost(other) > cost(fitted) + kFarBehind) return;
+    const double lead = cost(fitted) - cost(other);
+    if (lead < -kFarBehind || (effort == InnovationFit::trial && std::abs(lead) < kSameOptimum))
+      return;
     start.start = other.theta;
     other = fit_innovations(stage.context, start, width, effort);
     if (cost(other) + enough < cost(fitted) && !ends_at_least(other)) fitted = std::move(other);
@@ -126,8 +134,11 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
              parameters.parameters, parameters.start, options);
 }
 
-InnovationStage settled(const SearchContext& plain, ModelStage model,
-                        const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
+namespace {
+
+InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
+                             const disturbance::NoiseModel& start, int turns,
+                             SimulationWidth width) {
   InnovationStage stage;
   stage.model = std::move(model);
   stage.noise = start;
@@ -164,6 +175,19 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
     }
   }
   return best;
+}
+
+}  // namespace
+
+InnovationStage settled(const SearchContext& plain, ModelStage model,
+                        const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
+  if (!plain.memo) return settled_anew(plain, std::move(model), start, turns, width);
+  std::string key = SettledMemo::key_of(plain, model, start, turns);
+  if (std::optional<InnovationStage> known = plain.memo->find(plain, key)) return *std::move(known);
+  InnovationStage stage = settled_anew(plain, std::move(model), start, turns, width);
+  if (!plain.cancelled() && std::isfinite(stage.minus_two_log))
+    plain.memo->keep(std::move(key), stage);
+  return stage;
 }
 
 FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {

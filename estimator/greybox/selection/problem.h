@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,9 +58,12 @@ struct DiagnosisOptions {
   Separable separable;                                  ///< empty: no motion separates anything
 };
 
+class SettledMemo;
+
 struct SearchContext {
   DiagnosisProblem problem;
   DiagnosisOptions options;
+  std::shared_ptr<SettledMemo> memo = {};  ///< stages of all searches; null: none is kept
 
   [[nodiscard]] bool cancelled() const { return options.cancel && options.cancel(); }
 };

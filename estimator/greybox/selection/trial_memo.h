@@ -2,7 +2,6 @@
 // exchanges of the only effect found begin where the round began that found it.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -25,20 +24,14 @@ class TrialMemo {
 
   /// effect_trials(), kept for the last stage without effects.
   [[nodiscard]] std::vector<InnovationTrial> effects_beside(const InnovationStage& stage);
-  /// settled(), kept for effects beside that stage.
-  [[nodiscard]] InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
-                                        const InnovationTrial& trial);
 
  private:
   /// A stage by its likelihood and its parameters.
   using StageKey = std::pair<double, std::vector<std::string>>;
-  /// A start by its effect and its parameters' values.
-  using StartKey = std::pair<std::string, std::vector<double>>;
   struct Kept {
     std::mutex mutex;
     StageKey stage;
     std::vector<InnovationTrial> trials;
-    std::map<StartKey, InnovationStage> stages;
   };
   [[nodiscard]] static StageKey key_of(const InnovationStage& stage);
 

@@ -10,7 +10,6 @@
 
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/structure_search.h"
-#include "estimator/greybox/selection/trial_memo.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
@@ -70,31 +69,6 @@ TEST(SimulatedEffectsMemo, KnowsAModelByItsParameters) {
   EXPECT_EQ(known.effects.front().effect, "friction");
   model.fitted.parameters.push_back(named("second_mass.sensor_ratio"));
   EXPECT_FALSE(memo.knows(model));
-}
-
-// The memo's answers equal those of the search, for each effect and start.
-TEST(TrialMemo, GivesWhatTheSearchWouldFindAnew) {
-  const SearchContext context = diagnose_test::context_of(
-      "motion=multisine,length_s=10,friction.coulomb_N=60,outside.force_N=10", 17);
-  const InnovationStage first =
-      settled(context, first_stage(context), {}, kMostTurns, wide(context.options.threads));
-  TrialMemo memo;
-  std::vector<InnovationTrial> trials = memo.effects_beside(first);
-  ASSERT_GE(trials.size(), 2U);
-  trials.resize(2);
-  for (int times = 0; times < 2; ++times) {
-    for (const InnovationTrial& trial : trials) {
-      const InnovationStage anew = settled(context, first, trial);
-      const InnovationStage kept = memo.settled(context, first, trial);
-      EXPECT_EQ(kept.minus_two_log, anew.minus_two_log);
-      EXPECT_EQ(kept.model.added, anew.model.added);
-    }
-  }
-  InnovationStage other = first;
-  other.minus_two_log += 1.0;
-  (void)memo.effects_beside(other);
-  EXPECT_EQ(memo.settled(context, first, trials.front()).model.added,
-            settled(context, first, trials.front()).model.added);
 }
 
 // A flow at its limit passes no pulsation; a linear response to it would leave its difference.

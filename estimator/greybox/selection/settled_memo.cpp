@@ -1,0 +1,207 @@
+#include "estimator/greybox/selection/settled_memo.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "estimator/greybox/innovation_gains.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Bytes of the values that a result follows from.
+class KeyBytes {
+ public:
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+    add(std::span(&value, 1));
+  }
+  void add(const std::string& text) {
+    add(text.size());
+    bytes_ += text;
+  }
+  template <class T>
+  void add(std::span<const T> values) {
+    const std::size_t from = bytes_.size();
+    bytes_.resize(from + values.size_bytes());
+    if (!values.empty()) std::memcpy(bytes_.data() + from, values.data(), values.size_bytes());
+  }
+
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+/// FNV-1a over whole words: two records of one diagnosis that share it are the same.
+class RecordHash {
+ public:
+  void add(const std::vector<double>& values) {
+    for (const double value : values) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, &value, sizeof word);
+      add(word);
+    }
+  }
+  void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ULL ^ (hash_ >> 47U); }
+
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+};
+
+std::uint64_t hash_of(const FitDataset& data) {
+  RecordHash hash;
+  for (const Dataset& record : data.records) {
+    hash.add(record.size());
+    hash.add(record.t_s);
+    hash.add(record.u_V);
+    hash.add(record.y_m);
+    for (const std::size_t start : record.starts) hash.add(start);
+    for (std::size_t k = 0; k < record.size(); ++k) {
+      hash.add(static_cast<std::uint64_t>(record.valid[k]) << 8U |
+               static_cast<std::uint64_t>(record.initialising[k]));
+    }
+  }
+  return hash.value();
+}
+
+/// The model without formulas that are only candidates.
+plant_sim::ModelFile in_use(plant_sim::ModelFile model, const ModelStage& stage) {
+  const auto is_used = [&](const std::string& name) {
+    return std::any_of(model.effects.begin(), model.effects.end(),
+                       [&](const auto& one) { return one.name == name && one.present; }) ||
+           std::any_of(stage.fitted.parameters.begin(), stage.fitted.parameters.end(),
+                       [&](const FreeParameter& p) { return belongs_to(p, name); });
+  };
+  std::vector<std::string> unused;
+  for (const plant_sim::formula::FormulaEffect& formula : model.formula_effects) {
+    if (!is_used(formula.name)) unused.push_back(formula.name);
+  }
+  const auto is_unused = [&](const auto& one) {
+    return std::find(unused.begin(), unused.end(), one.name) != unused.end();
+  };
+  std::erase_if(model.formula_effects, is_unused);
+  std::erase_if(model.effects, is_unused);
+  return model;
+}
+
+void add(KeyBytes& key, const std::vector<FreeParameter>& parameters) {
+  key.add(parameters.size());
+  for (const FreeParameter& p : parameters) {
+    key.add(p.name);
+    key.add(p.scale);
+    for (const double value : {p.unit, p.lower, p.upper, p.prior_mean, p.prior_sd, p.origin})
+      key.add(value);
+    key.add(p.refinement);
+    key.add(p.instead_of);
+  }
+}
+
+void add(KeyBytes& key, const disturbance::NoiseModel& noise) {
+  for (const double value : {noise.noise.disturbance_sd, noise.noise.corner_Hz, noise.noise.walk_m,
+                             noise.noise.sensor_m}) {
+    key.add(value);
+  }
+  key.add(noise.lines.size());
+  for (const disturbance::SpectralLine& line : noise.lines) {
+    key.add(line.site);
+    key.add(line.frequency_Hz);
+  }
+  for (const std::vector<Eigen::Vector2d>& records : noise.waves) {
+    key.add(records.size());
+    for (const Eigen::Vector2d& wave : records) {
+      key.add(wave[0]);
+      key.add(wave[1]);
+    }
+  }
+}
+
+std::size_t size_bytes_of(const InnovationStage& stage) {
+  std::size_t numbers = static_cast<std::size_t>(stage.model.fitted.residual_m.size() +
+                                                 stage.model.fitted.jacobian.size());
+  std::size_t bytes = 0;
+  for (const disturbance::Linearisation& linear : stage.linear) {
+    bytes += linear.transition.size() * sizeof(disturbance::StateMatrix) +
+             linear.from_supply.size() * sizeof(disturbance::StateVector);
+    numbers += linear.speed_mps.size() + linear.gap_m.size();
+  }
+  for (const Dataset& record : stage.context.problem.data.records) {
+    const InnovationGains& gains = *record.innovations;
+    numbers += static_cast<std::size_t>(gains.gain.size() + gains.scale.size() +
+                                        gains.lines.size() + gains.line_m.size());
+  }
+  return bytes + numbers * sizeof(double);
+}
+
+}  // namespace
+
+std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& model,
+                                const disturbance::NoiseModel& start, int turns) {
+  const DiagnosisProblem& problem = plain.problem;
+  KeyBytes key;
+  key.add(turns);
+  key.add(hash_of(problem.data));
+  for (const double value : {problem.data.noise_floor_m, problem.data.least_floor_m,
+                             problem.data.most_sensor_ratio, problem.data.sample_time_s}) {
+    key.add(value);
+  }
+  key.add(problem.data.command_is_interpolated);
+  key.add(plant_sim::print_model(in_use(problem.model, model)));
+  for (const std::string& name : model.added) {
+    key.add(name);
+    key.add(std::any_of(problem.candidate_effects.begin(), problem.candidate_effects.end(),
+                        [&](const plant_sim::EffectInfo& one) { return one.name == name; }));
+  }
+  add(key, model.fitted.parameters);
+  const Eigen::VectorXd& theta = model.fitted.theta;
+  key.add(std::span(theta.data(), static_cast<std::size_t>(theta.size())));
+  add(key, start);
+  return key.bytes();
+}
+
+std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
+                                                 const std::string& key) const {
+  std::shared_ptr<const Kept> kept;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = stages_.find(key);
+    if (known == stages_.end()) return {};
+    kept = known->second;
+  }
+  InnovationStage stage = kept->stage;
+  stage.context = plain;
+  FitDataset& data = stage.context.problem.data;
+  for (std::size_t r = 0; r < data.records.size(); ++r)
+    data.records[r].innovations = kept->gains[r];
+  disturbance::score_every_sample(data);
+  return stage;
+}
+
+void SettledMemo::keep(std::string key, const InnovationStage& stage) {
+  auto kept = std::make_shared<Kept>();
+  kept->size_bytes = size_bytes_of(stage);
+  for (const Dataset& record : stage.context.problem.data.records)
+    kept->gains.push_back(record.innovations);
+  kept->stage.model = stage.model;
+  kept->stage.noise = stage.noise;
+  kept->stage.linear = stage.linear;
+  kept->stage.minus_two_log = stage.minus_two_log;
+  const std::lock_guard lock(mutex_);
+  const std::size_t added_bytes = kept->size_bytes;
+  if (!stages_.emplace(key, std::move(kept)).second) return;
+  size_bytes_ += added_bytes;
+  by_age_.push_back(std::move(key));
+  while (size_bytes_ > kMost_bytes) {
+    const auto oldest = stages_.find(by_age_.front());
+    size_bytes_ -= oldest->second->size_bytes;
+    stages_.erase(oldest);
+    by_age_.pop_front();
+  }
+}
+
+}  // namespace estimator::greybox::selection
