@@ -190,12 +190,13 @@ std::string motion_words(const monitor::control::ReferenceConfig& reference, dou
 }
 
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
-                             double separation) {
+                             double separation, bool tells_others) {
   const std::vector<std::string> others(names.begin() + 1, names.end());
-  return "Run " + motion + ": " + names.front() + " in the place of " +
-         config::schema::listed(others, "or") +
-         ", or the other way round, would then leave an error of about " + number(separation) +
-         " times the noise.";
+  std::string words = "Run " + motion + ": to take " + names.front() + " for " +
+                      config::schema::listed(others, "or") + ", or the reverse, would then leave " +
+                      "an error of about " + number(separation) + " times the noise.";
+  if (!tells_others) words += " It does not tell " + config::schema::listed(others) + " apart.";
+  return words;
 }
 
 std::string words_for_sensor(const plant_sim::ModelFile& model,

@@ -20,7 +20,8 @@ namespace selection = estimator::greybox::selection;
                                        double duration_s);
 
 [[nodiscard]] std::string words_for_motion(const std::vector<std::string>& names,
-                                           const std::string& motion, double separation);
+                                           const std::string& motion, double separation,
+                                           bool tells_others);
 /// A further measurement for the case that no motion helps, by where the effects act.
 [[nodiscard]] std::string words_for_sensor(const plant_sim::ModelFile& model,
                                            const std::vector<std::string>& names);

@@ -36,29 +36,53 @@ std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
 using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
                               const greybox::FitSummary&);
 
-/// Separation of the found effect, the first of the rivals, from the closest of the others, either
-/// way round, over what the truth itself leaves. Whether the others are told apart, of which one
-/// may contain another, does not make the found effect any surer.
+/// What the truth itself leaves on its motion, at least 1.
+double left_by_truth(const selection::SearchContext& context,
+                     const std::vector<greybox::FitSummary>& rivals,
+                     const std::vector<greybox::FitDataset>& truths, std::size_t truth) {
+  return std::max(selection::own_separation(context, truths[truth], rivals[truth]), 1.0);
+}
+
+/// Separation of two rivals, either way round, over what the truth itself leaves; 0 where a truth
+/// cannot follow its own motion, which then tells nothing apart.
+double between(const selection::SearchContext& context,
+               const std::vector<greybox::FitSummary>& rivals,
+               const std::vector<greybox::FitDataset>& truths, std::size_t one, std::size_t other,
+               Separation separation) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [truth, rival] : {std::pair(one, other), std::pair(other, one)}) {
+    const double own = left_by_truth(context, rivals, truths, truth);
+    if (!std::isfinite(own)) return 0.0;
+    if (context.cancelled()) continue;
+    least = std::min(least, separation(context, truths[truth], rivals[rival]) / own);
+  }
+  return least;
+}
+
+/// Separation of the found effect, the first of the rivals, from the closest of the others.
+/// Separation among the others, which may contain one another, does not count.
 double closest(const selection::SearchContext& context,
                const std::vector<greybox::FitSummary>& rivals,
                const std::vector<greybox::FitDataset>& truths, Separation separation) {
-  std::vector<double> own;
-  for (std::size_t truth = 0; truth < truths.size(); ++truth) {
-    own.push_back(selection::own_separation(context, truths[truth], rivals[truth]));
-    // a truth that cannot follow its own motion tells nothing apart
-    if (!std::isfinite(own.back())) return 0.0;
-  }
   double least = std::numeric_limits<double>::infinity();
-  const auto compare = [&](std::size_t truth, std::size_t other) {
-    if (context.cancelled()) return;
-    least = std::min(least,
-                     separation(context, truths[truth], rivals[other]) / std::max(own[truth], 1.0));
-  };
-  for (std::size_t other = 1; other < rivals.size(); ++other) {
-    compare(0, other);
-    compare(other, 0);
-  }
+  for (std::size_t other = 1; other < rivals.size(); ++other)
+    least = std::min(least, between(context, rivals, truths, 0, other, separation));
   return least;
+}
+
+/// True where the motion tells the rivals of the found effect from one another as well.
+bool tells_others(const selection::SearchContext& context,
+                  const std::vector<greybox::FitSummary>& rivals,
+                  const std::vector<greybox::FitDataset>& truths) {
+  for (std::size_t one = 1; one < rivals.size(); ++one) {
+    for (std::size_t other = one + 1; other < rivals.size(); ++other) {
+      if (between(context, rivals, truths, one, other, selection::expected_separation) <
+          kSeparates) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 struct Option {
@@ -100,6 +124,7 @@ Advice advise(const selection::SearchContext& context,
               const std::vector<std::string>& names) {
   std::vector<Option> options = options_for(context, rivals);
   Advice advice;
+  std::size_t best = 0;
   for (std::size_t i = 0; i < std::min(kTried, options.size()); ++i) {
     Option& option = options[i];
     if (option.expected < kSeparates || context.cancelled()) break;
@@ -107,11 +132,14 @@ Advice advise(const selection::SearchContext& context,
     if (separation <= advice.separation) continue;
     advice.separation = separation;
     advice.motion = std::move(option.motion);
+    best = i;
     if (separation >= kClearly) break;
   }
   advice.separates = advice.separation >= kSeparates;
-  advice.words = advice.separates ? words_for_motion(names, advice.motion.words, advice.separation)
-                                  : words_for_sensor(context.problem.model, names);
+  advice.words = advice.separates
+                     ? words_for_motion(names, advice.motion.words, advice.separation,
+                                        tells_others(context, rivals, options[best].truths))
+                     : words_for_sensor(context.problem.model, names);
   return advice;
 }
 

@@ -47,7 +47,7 @@ struct InnovationData {
                                              const Eigen::VectorXd& theta,
                                              const Linearisations& models, const NoiseModel& noise);
 
-/// Every valid sample is fitted and scored, as innovations are.
+/// Sets the training and the validation mask to all valid samples.
 void score_every_sample(FitDataset& data);
 
 /// Adds to the waves of `noise` what is left of its lines in the innovations of `data`, which must

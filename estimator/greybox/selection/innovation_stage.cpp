@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,9 +26,10 @@ constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
 /// Lead in -2 log L that a fit from another start does not make up for after a quick look.
 constexpr double kFarBehind = 100.0;
-/// Difference in -2 log L from the fit that there is within which a quick look from another start
-/// has come to the same optimum.
+/// Largest lag in -2 log L, and distance from the fit in squared standard errors, at which a quick
+/// look from another start has come to the same optimum.
 constexpr double kSameOptimum = 1.0;
+constexpr double kSameParameters = 4.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
 /// ... and each parameter that one has more than the refinement whose place it takes. A shorter one
@@ -61,6 +63,21 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
   return result;
 }
 
+/// Distance of other parameters from a fit's in squared standard errors: the rise of -2 log L that
+/// its Jacobian expects. Infinite where the fits have other parameters, or no Jacobian is known.
+double distance(const FitSummary& fitted, const FitSummary& other, double floor_m) {
+  const bool known = fitted.jacobian.cols() == fitted.theta.size();
+  if (!known || other.theta.size() != fitted.theta.size())
+    return std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd by = other.theta - fitted.theta;
+  double rise = (fitted.jacobian * by).squaredNorm() / (floor_m * floor_m);
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const double sd = fitted.parameters[i].prior_sd;
+    if (std::isfinite(sd)) rise += std::pow(by[static_cast<Eigen::Index>(i)] / sd, 2);
+  }
+  return rise;
+}
+
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, as a disturbance that was not known may have bent them, where the model file has them.
 void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
@@ -75,9 +92,10 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   const auto cost = [&](const FitSummary& fit) { return squares(fit, floor_m) + prior_cost(fit); };
   const auto try_other = [&](ParameterSubset start, double enough) {
     FitSummary other = fit_innovations(stage.context, start, width, InnovationFit::quick);
-    const double lead = cost(fitted) - cost(other);
-    if (lead < -kFarBehind || (effort == InnovationFit::trial && std::abs(lead) < kSameOptimum))
-      return;
+    const double lag = cost(other) - cost(fitted);
+    if (lag > kFarBehind) return;
+    const bool near = lag >= 0.0 && lag < kSameOptimum && effort == InnovationFit::trial;
+    if (near && distance(fitted, other, floor_m) < kSameParameters) return;
     start.start = other.theta;
     other = fit_innovations(stage.context, start, width, effort);
     if (cost(other) + enough < cost(fitted) && !ends_at_least(other)) fitted = std::move(other);
@@ -182,11 +200,10 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
 InnovationStage settled(const SearchContext& plain, ModelStage model,
                         const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
   if (!plain.memo) return settled_anew(plain, std::move(model), start, turns, width);
-  std::string key = SettledMemo::key_of(plain, model, start, turns);
+  const std::string key = SettledMemo::key_of(plain, model, start, turns, width);
   if (std::optional<InnovationStage> known = plain.memo->find(plain, key)) return *std::move(known);
   InnovationStage stage = settled_anew(plain, std::move(model), start, turns, width);
-  if (!plain.cancelled() && std::isfinite(stage.minus_two_log))
-    plain.memo->keep(std::move(key), stage);
+  if (!plain.cancelled() && std::isfinite(stage.minus_two_log)) plain.memo->keep(key, stage);
   return stage;
 }
 

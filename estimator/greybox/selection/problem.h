@@ -63,7 +63,7 @@ class SettledMemo;
 struct SearchContext {
   DiagnosisProblem problem;
   DiagnosisOptions options;
-  std::shared_ptr<SettledMemo> memo = {};  ///< stages of all searches; null: none is kept
+  std::shared_ptr<SettledMemo> memo = {};  ///< shared by copies of the context; null: none
 
   [[nodiscard]] bool cancelled() const { return options.cancel && options.cancel(); }
 };

@@ -1,6 +1,9 @@
 #include "estimator/greybox/selection/settled_memo.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cassert>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -36,15 +39,16 @@ class KeyBytes {
   std::string bytes_;
 };
 
-/// FNV-1a over whole words: two records of one diagnosis that share it are the same.
+/// Hash after FNV-1a, of words in the place of bytes; records of equal hashes are taken for equal.
 class RecordHash {
  public:
-  void add(const std::vector<double>& values) {
-    for (const double value : values) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, &value, sizeof word);
-      add(word);
-    }
+  void add(double value) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &value, sizeof word);
+    add(word);
+  }
+  void add(std::span<const double> values) {
+    for (const double value : values) add(value);
   }
   void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ULL ^ (hash_ >> 47U); }
 
@@ -57,7 +61,9 @@ class RecordHash {
 std::uint64_t hash_of(const FitDataset& data) {
   RecordHash hash;
   for (const Dataset& record : data.records) {
+    assert(!record.innovations);
     hash.add(record.size());
+    hash.add(record.sample_time_s);
     hash.add(record.t_s);
     hash.add(record.u_V);
     hash.add(record.y_m);
@@ -67,6 +73,7 @@ std::uint64_t hash_of(const FitDataset& data) {
                static_cast<std::uint64_t>(record.initialising[k]));
     }
   }
+  hash.add(std::span(data.all_mask.data(), static_cast<std::size_t>(data.all_mask.size())));
   return hash.value();
 }
 
@@ -112,6 +119,7 @@ void add(KeyBytes& key, const disturbance::NoiseModel& noise) {
     key.add(line.site);
     key.add(line.frequency_Hz);
   }
+  key.add(noise.waves.size());
   for (const std::vector<Eigen::Vector2d>& records : noise.waves) {
     key.add(records.size());
     for (const Eigen::Vector2d& wave : records) {
@@ -141,10 +149,12 @@ std::size_t size_bytes_of(const InnovationStage& stage) {
 }  // namespace
 
 std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& model,
-                                const disturbance::NoiseModel& start, int turns) {
+                                const disturbance::NoiseModel& start, int turns,
+                                SimulationWidth width) {
   const DiagnosisProblem& problem = plain.problem;
   KeyBytes key;
   key.add(turns);
+  key.add(width.groups);  // a part of a fit's result, as the number of threads is not
   key.add(hash_of(problem.data));
   for (const double value : {problem.data.noise_floor_m, problem.data.least_floor_m,
                              problem.data.most_sensor_ratio, problem.data.sample_time_s}) {
@@ -152,10 +162,16 @@ std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& mo
   }
   key.add(problem.data.command_is_interpolated);
   key.add(plant_sim::print_model(in_use(problem.model, model)));
-  for (const std::string& name : model.added) {
-    key.add(name);
-    key.add(std::any_of(problem.candidate_effects.begin(), problem.candidate_effects.end(),
-                        [&](const plant_sim::EffectInfo& one) { return one.name == name; }));
+  for (const Dataset& record : problem.data.records) key.add(record.name);
+  key.add(problem.plant_parameters.size());
+  key.add(model.added.size());
+  for (const std::string& name : model.added) key.add(name);
+  // the candidates' refinements take the place of one another
+  for (const plant_sim::EffectInfo& effect : problem.candidate_effects) {
+    if (std::find(model.added.begin(), model.added.end(), effect.name) == model.added.end())
+      continue;
+    key.add(effect.name);
+    add(key, effect_parameters(effect, kEveryRefinement));
   }
   add(key, model.fitted.parameters);
   const Eigen::VectorXd& theta = model.fitted.theta;
@@ -165,13 +181,14 @@ std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& mo
 }
 
 std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
-                                                 const std::string& key) const {
+                                                 const std::string& key) {
   std::shared_ptr<const Kept> kept;
   {
     const std::lock_guard lock(mutex_);
     const auto known = stages_.find(key);
     if (known == stages_.end()) return {};
-    kept = known->second;
+    by_use_.splice(by_use_.end(), by_use_, known->second.use);
+    kept = known->second.kept;
   }
   InnovationStage stage = kept->stage;
   stage.context = plain;
@@ -182,9 +199,9 @@ std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
   return stage;
 }
 
-void SettledMemo::keep(std::string key, const InnovationStage& stage) {
+void SettledMemo::keep(const std::string& key, const InnovationStage& stage) {
   auto kept = std::make_shared<Kept>();
-  kept->size_bytes = size_bytes_of(stage);
+  kept->size_bytes = size_bytes_of(stage) + key.size();
   for (const Dataset& record : stage.context.problem.data.records)
     kept->gains.push_back(record.innovations);
   kept->stage.model = stage.model;
@@ -192,15 +209,15 @@ void SettledMemo::keep(std::string key, const InnovationStage& stage) {
   kept->stage.linear = stage.linear;
   kept->stage.minus_two_log = stage.minus_two_log;
   const std::lock_guard lock(mutex_);
-  const std::size_t added_bytes = kept->size_bytes;
-  if (!stages_.emplace(key, std::move(kept)).second) return;
-  size_bytes_ += added_bytes;
-  by_age_.push_back(std::move(key));
-  while (size_bytes_ > kMost_bytes) {
-    const auto oldest = stages_.find(by_age_.front());
-    size_bytes_ -= oldest->second->size_bytes;
+  const auto [at, is_new] = stages_.try_emplace(key);
+  if (!is_new) return;
+  size_bytes_ += kept->size_bytes;
+  at->second = {std::move(kept), by_use_.insert(by_use_.end(), &at->first)};
+  while (size_bytes_ > most_bytes_) {
+    const auto oldest = stages_.find(*by_use_.front());
+    size_bytes_ -= oldest->second.kept->size_bytes;
+    by_use_.pop_front();
     stages_.erase(oldest);
-    by_age_.pop_front();
   }
 }
 

@@ -1,9 +1,9 @@
-// Stages that a diagnosis has settled. Its searches, with other candidates and other limits, come
-// by the same stages again.
+// Stages that a diagnosis has settled. Its searches, with other candidates and other limits, reach
+// the same stages again.
 #pragma once
 
 #include <cstddef>
-#include <deque>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -15,22 +15,27 @@
 
 namespace estimator::greybox::selection {
 
-/// Calls from several threads are safe. A stage that is found again has the bits of one settled
-/// anew: what is kept never changes an answer.
+/// Calls from several threads are safe. A stage that is found has the bits of one settled anew:
+/// whether it is kept never changes an answer.
 class SettledMemo {
  public:
-  /// What a stage settled from there follows from: the record, the model with the effects in use,
-  /// the parameters, the noise model and the number of turns.
+  /// Bytes of everything that settled() depends on: records, model with the effects in use,
+  /// parameters, noise model, turns and the width of its simulations. `plain`: data without
+  /// innovations.
   [[nodiscard]] static std::string key_of(const SearchContext& plain, const ModelStage& model,
-                                          const disturbance::NoiseModel& start, int turns);
+                                          const disturbance::NoiseModel& start, int turns,
+                                          SimulationWidth width);
 
   /// The stage kept under the key, in the context of `plain`.
   [[nodiscard]] std::optional<InnovationStage> find(const SearchContext& plain,
-                                                    const std::string& key) const;
-  /// The oldest stages make room where all take more than kMost_bytes.
-  void keep(std::string key, const InnovationStage& stage);
+                                                    const std::string& key);
+  /// Drops the stages that were not asked for the longest while all take more than `most_bytes`.
+  void keep(const std::string& key, const InnovationStage& stage);
+
+  [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
 
   static constexpr std::size_t kMost_bytes = std::size_t{256} << 20U;
+  explicit SettledMemo(std::size_t most_bytes = kMost_bytes) : most_bytes_(most_bytes) {}
 
  private:
   /// A stage whose context holds the gains alone.
@@ -39,10 +44,15 @@ class SettledMemo {
     std::vector<std::shared_ptr<const InnovationGains>> gains;
     std::size_t size_bytes = 0;
   };
+  struct Entry {
+    std::shared_ptr<const Kept> kept;
+    std::list<const std::string*>::iterator use;
+  };
 
-  mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<const Kept>> stages_;
-  std::deque<std::string> by_age_;
+  std::size_t most_bytes_;
+  std::mutex mutex_;
+  std::map<std::string, Entry> stages_;
+  std::list<const std::string*> by_use_;  ///< keys of `stages_`, the latest asked for last
   std::size_t size_bytes_ = 0;
 };
 

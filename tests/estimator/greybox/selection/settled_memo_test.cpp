@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 
 #include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
@@ -18,6 +19,10 @@ SearchContext short_record(std::size_t seed) {
 
 InnovationStage settled_once(const SearchContext& context, const ModelStage& from) {
   return settled(context, from, {}, 1, SimulationWidth{});
+}
+
+std::string key_of(const SearchContext& context, const ModelStage& from) {
+  return SettledMemo::key_of(context, from, {}, 1, {});
 }
 
 void expect_same(const InnovationStage& one, const InnovationStage& other) {
@@ -41,14 +46,44 @@ TEST(SettledMemo, GivesTheStageThatWouldBeSettledAnew) {
   context.memo = std::make_shared<SettledMemo>();
   expect_same(settled_once(context, first), anew);
   expect_same(settled_once(context, first), anew);
-  EXPECT_TRUE(context.memo->find(context, SettledMemo::key_of(context, first, {}, 1)));
+}
+
+TEST(SettledMemo, ServesAContextWithOtherCandidates) {
+  const SearchContext context = short_record(17);
+  const ModelStage first = first_stage(context);
+  InnovationStage marked = settled_once(context, first);
+  marked.minus_two_log += 1.0;
+  SearchContext other = context;
+  other.memo = std::make_shared<SettledMemo>();
+  other.problem.candidate_effects.clear();
+  other.memo->keep(key_of(context, first), marked);
+  const InnovationStage found = settled_once(other, first);
+  EXPECT_EQ(found.minus_two_log, marked.minus_two_log);
+  EXPECT_TRUE(found.context.problem.candidate_effects.empty());
+}
+
+TEST(SettledMemo, DropsWhatWasNotAskedForTheLongest) {
+  const SearchContext context = short_record(17);
+  const ModelStage first = first_stage(context);
+  const InnovationStage stage = settled_once(context, first);
+  SettledMemo large;
+  large.keep("a", stage);
+  SettledMemo memo(large.size_bytes() * 5 / 2);
+  memo.keep("a", stage);
+  memo.keep("b", stage);
+  EXPECT_TRUE(memo.find(context, "a"));
+  memo.keep("c", stage);
+  EXPECT_TRUE(memo.find(context, "a"));
+  EXPECT_FALSE(memo.find(context, "b"));
+  EXPECT_TRUE(memo.find(context, "c"));
+  EXPECT_EQ(memo.size_bytes(), 2 * large.size_bytes());
 }
 
 // A candidate that is declared and not used changes nothing.
 TEST(SettledMemo, KnowsAStageByWhatItFollowsFrom) {
   const SearchContext context = short_record(17);
   const ModelStage first = first_stage(context);
-  const std::string key = SettledMemo::key_of(context, first, {}, 1);
+  const std::string key = key_of(context, first);
 
   SearchContext other = context;
   other.problem.candidate_effects.clear();
@@ -57,27 +92,41 @@ TEST(SettledMemo, KnowsAStageByWhatItFollowsFrom) {
   law.formula = "c*v_mps";
   law.parameters = {{.name = "c", .what = "drag", .min = -1.0, .max = 1.0, .typical = 1.0}};
   other.problem.model.declare(law, "test");
-  EXPECT_EQ(SettledMemo::key_of(other, first, {}, 1), key);
+  EXPECT_EQ(key_of(other, first), key);
 
-  EXPECT_NE(SettledMemo::key_of(context, first, {}, 2), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, {}, 2, {}), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, {}, 1, wide(2)), key);
+  EXPECT_EQ(SettledMemo::key_of(context, first, {}, 1, {1, 2}), key);
   ModelStage moved = first;
   moved.fitted.theta[0] += 1e-12;
-  EXPECT_NE(SettledMemo::key_of(context, moved, {}, 1), key);
+  EXPECT_NE(key_of(context, moved), key);
   moved = first;
   moved.fitted.parameters.front().prior_sd *= 2.0;
-  EXPECT_NE(SettledMemo::key_of(context, moved, {}, 1), key);
+  EXPECT_NE(key_of(context, moved), key);
   disturbance::NoiseModel noise;
   noise.lines.push_back({disturbance::LineSite::force, 20.0});
-  EXPECT_NE(SettledMemo::key_of(context, first, noise, 1), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, noise, 1, {}), key);
+  moved = first;
+  moved.added.emplace_back("friction");
+  EXPECT_NE(key_of(context, moved), key);
   other = context;
   other.problem.data.records.front().u_V[100] += 1e-9;
-  EXPECT_NE(SettledMemo::key_of(other, first, {}, 1), key);
+  EXPECT_NE(key_of(other, first), key);
+  other = context;
+  other.problem.data.all_mask[100] = 1.0 - other.problem.data.all_mask[100];
+  EXPECT_NE(key_of(other, first), key);
+  other = context;
+  other.problem.data.noise_floor_m *= 1.5;
+  EXPECT_NE(key_of(other, first), key);
+  other = context;
+  other.problem.data.records.front().name = "another";
+  EXPECT_NE(key_of(other, first), key);
   other = context;
   other.problem.data.records.front().valid[100] ^= 1;
-  EXPECT_NE(SettledMemo::key_of(other, first, {}, 1), key);
+  EXPECT_NE(key_of(other, first), key);
   other = context;
   *other.problem.model.value("mass_kg") += 1.0;
-  EXPECT_NE(SettledMemo::key_of(other, first, {}, 1), key);
+  EXPECT_NE(key_of(other, first), key);
 }
 
 }  // namespace
