@@ -210,6 +210,33 @@ bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect
   return false;
 }
 
+/// True where the search took another effect before this one, because it left less by more than
+/// chance, and dropped it again: either may stand in the other's place.
+bool is_outdone(const Diagnosis& diagnosis, const std::string& effect) {
+  if (diagnosis.by_innovations) return false;
+  const std::vector<Round>& rounds = diagnosis.search.rounds;
+  const auto has = [](const std::vector<std::string>& effects, const std::string& one) {
+    return std::find(effects.begin(), effects.end(), one) != effects.end();
+  };
+  const auto is_dropped = [&](const std::string& other) {
+    return !has(diagnosis.missing, other) &&
+           std::any_of(rounds.begin(), rounds.end(),
+                       [&](const Round& round) { return has(round.before.added, other); });
+  };
+  return std::any_of(rounds.begin(), rounds.end(), [&](const Round& round) {
+    const auto& tried = round.candidates;
+    const auto own = std::find_if(tried.begin(), tried.end(), [&](const Candidate& one) {
+      return one.fitted_at_all && one.effects == std::vector{effect};
+    });
+    if (own == tried.end()) return false;
+    return std::any_of(tried.begin(), tried.end(), [&](const Candidate& other) {
+      return other.fitted_at_all && other.effects.size() == 1 &&
+             other.validation_rms_m < own->validation_rms_m && other.p_value < kLikelyChance &&
+             is_dropped(other.effects.front());
+    });
+  });
+}
+
 /// True where two or more parameters of the plant are fitted and all of them are at their bounds:
 /// the plant is another.
 bool is_another_plant(const Diagnosis& diagnosis) {
@@ -227,6 +254,7 @@ std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::s
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
     if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
   }
+  if (is_outdone(diagnosis, effect)) return Doubt::rivals;
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
   if (is_beyond_doubt(diagnosis, effect)) return {};
   if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect).p_value > kLikelyChance) {

@@ -198,6 +198,34 @@ TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
   EXPECT_THAT(named(d), testing::Not(testing::Contains("friction rivals")));
 }
 
+// A lasting offset beside an asymmetry that left less and was dropped again.
+TEST(Confidence, AnEffectThatADroppedOneOutdidIsNotEstablished) {
+  Diagnosis d = unexplained();
+  const auto tried = [](const char* effect, double left_m, double p_value) {
+    Candidate one;
+    one.effects = {effect};
+    one.validation_rms_m = left_m;
+    one.p_value = p_value;
+    one.fitted_at_all = true;
+    return one;
+  };
+  Round round;
+  round.candidates = {tried("deadband", 1.2e-3, 5e-4), tried("friction", 1.4e-3, 9e-4)};
+  Round next;
+  next.before.added = {"deadband"};
+  d.search.rounds = {round, next};
+  EXPECT_THAT(named(d), ElementsAre("friction rivals", "backlash within_error"));
+  // never taken, by chance, or in the model as well
+  d.search.rounds.pop_back();
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.search.rounds.push_back(next);
+  d.search.rounds.front().candidates.front().p_value = 0.2;
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.search.rounds.front().candidates.front() = tried("backlash", 1.2e-3, 5e-4);
+  d.search.rounds.back().before.added = {"backlash"};
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+}
+
 TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {
   Diagnosis d = unexplained();
   d.missing = {"friction", "load_spring", "load_force"};
