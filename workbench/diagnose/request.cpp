@@ -12,6 +12,7 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "config/schema/spelling.h"
+#include "estimator/greybox/parameter_catalogue.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "workbench/diagnose/leaps.h"
 #include "workbench/files/file_check.h"
@@ -104,6 +105,20 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
   }
 }
 
+/// Refuses to keep what the model does not have: the sizes of such effects are what is sought.
+void require_fixed_present(const DiagnosisRequest& request,
+                           const std::vector<plant_sim::EffectInfo>& candidates) {
+  for (const std::string& name : greybox::split_names(request.selection.fix)) {
+    const std::string effect = plant_sim::library_name(name.substr(0, name.find('.')));
+    const bool is_sought = std::any_of(candidates.begin(), candidates.end(),
+                                       [&](const auto& one) { return one.name == effect; });
+    if (!is_sought) continue;
+    throw config::schema::UsageError(
+        fmt::format("--fix {}: the model has no {}, which is sought; --without {} leaves it out",
+                    name, effect, effect));
+  }
+}
+
 /// Gives every parameter one place: an effect that the model declares without a size is sought, or
 /// is part of the model where --free names it.
 void part_from_candidates(const DiagnosisRequest& request, selection::DiagnosisProblem& problem) {
@@ -153,6 +168,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
     }
   }
   choose_effects(request, prepared.problem.candidate_effects);
+  require_fixed_present(request, prepared.problem.candidate_effects);
   prepared.problem.effects_only = !request.only.empty();
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   prepared.options.threads = request.threads > 0 ? request.threads : processors;

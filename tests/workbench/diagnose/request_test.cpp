@@ -92,6 +92,13 @@ TEST_F(DiagnoseRequest, OnlyAndWithoutTheSameEffectAreRefused) {
   expect_refused(2, "--without names every effect of --only: deadband");
 }
 
+TEST_F(DiagnoseRequest, AnEffectThatTheModelLacksIsNotKept) {
+  request_.selection.fix = {"backlash"};
+  expect_refused(2, "--fix backlash: the model has no backlash, which is sought; --without");
+  request_.without = {"backlash"};
+  EXPECT_NO_THROW((void)prepare(request_));
+}
+
 TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
   request_.ignored = {"1-2"};
   expect_refused(2, "is not a span");
