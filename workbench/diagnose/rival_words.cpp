@@ -32,8 +32,9 @@ std::vector<std::string> rival_words(const selection::Diagnosis& d) {
   }
   for (const auto& group : d.same_here) {
     if (!d.rests_on_one_of(group)) continue;
-    out.push_back("On this plant no motion that was tried tells " + config::schema::listed(group) +
-                  " apart: the name is a choice.");
+    const std::vector<std::string> others(group.begin() + 1, group.end());
+    out.push_back("The name " + group.front() + " is a choice: on this plant " +
+                  config::schema::listed(others, "or") + " would do as well.");
   }
   for (const std::string& name : d.established()) {
     if (name == "load_force" && holds_return_pressure(d)) {

@@ -62,8 +62,20 @@ std::string undetermined_words(const selection::Diagnosis& d) {
          (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
 }
 
+/// The effect with its value, and the names that are as good.
+std::string effect_or_rivals(const selection::Diagnosis& d, const std::string& effect) {
+  std::string text = effect_words(d, effect);
+  for (const std::vector<std::string>& group : d.same_here) {
+    if (group.front() != effect) continue;
+    const std::vector<std::string> others(group.begin() + 1, group.end());
+    text += " (or " + config::schema::listed(others, "or") + " in its place)";
+  }
+  return text;
+}
+
 std::string missing_words(const selection::Diagnosis& d) {
-  return "Missing: " + effects_words(d, d.established()) + ".";
+  const auto text = [&](const std::string& effect) { return effect_or_rivals(d, effect); };
+  return "Missing: " + config::schema::joined_by(d.established(), text, "; ") + ".";
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {

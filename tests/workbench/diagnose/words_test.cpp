@@ -198,9 +198,9 @@ TEST(Words, AliasesOfWhatIsNotEstablishedAreLeftOut) {
   selection::Diagnosis& d = outcome.diagnosis;
   d.verdict = selection::Verdict::unexplained;
   d.same_here = {{"friction", "backlash"}};
-  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("the name is a choice")));
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("The name friction is a choice")));
   d.possible = {{"friction", selection::Doubt::stand_in}};
-  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("the name is a choice"))));
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("is a choice"))));
 }
 
 TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
@@ -268,8 +268,9 @@ TEST(Words, ADifferenceBetweenRecordsNamesTheRecordThatDiffers) {
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
-  EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("no motion that was tried tells friction and my_formula apart")));
+  EXPECT_THAT(remarks(outcome), Contains("The name friction is a choice: on this plant my_formula "
+                                         "would do as well."));
+  EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr(" (or my_formula in its place)."));
 }
 
 }  // namespace
