@@ -36,7 +36,7 @@ std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
 using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
                               const greybox::FitSummary&);
 
-/// What the truth itself leaves on its motion, at least 1.
+/// Separation that the truth itself leaves on its motion, at least 1.
 double left_by_truth(const selection::SearchContext& context,
                      const std::vector<greybox::FitSummary>& rivals,
                      const std::vector<greybox::FitDataset>& truths, std::size_t truth) {

@@ -173,6 +173,10 @@ bool is_beyond_sense(const Diagnosis& diagnosis, const std::string& effect) {
   });
 }
 
+bool has(const std::vector<std::string>& effects, const std::string& effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
 struct Chance {
   double p_value = std::nan("");        ///< that what the effect gained is chance; NaN: not known
   double p_best_of_all = std::nan("");  ///< that the best of all that were tried gains as much
@@ -180,14 +184,11 @@ struct Chance {
 
 /// For what the effect gained when it was taken last.
 Chance chance_of(const StructureSearch& search, const std::string& effect) {
-  const auto has = [&](const std::vector<std::string>& effects) {
-    return std::find(effects.begin(), effects.end(), effect) != effects.end();
-  };
   for (auto round = search.rounds.rbegin(); round != search.rounds.rend(); ++round) {
-    if (has(round->before.added)) continue;
-    const auto own =
-        std::find_if(round->candidates.begin(), round->candidates.end(),
-                     [&](const auto& one) { return one.fitted_at_all && has(one.effects); });
+    if (has(round->before.added, effect)) continue;
+    const auto own = std::find_if(
+        round->candidates.begin(), round->candidates.end(),
+        [&](const auto& one) { return one.fitted_at_all && has(one.effects, effect); });
     // 1: too few blocks of held-out data to say
     if (own == round->candidates.end()) continue;
     if (!(own->p_value < 1.0)) return {};
@@ -215,9 +216,6 @@ bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect
 bool is_outdone(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.by_innovations) return false;
   const std::vector<Round>& rounds = diagnosis.search.rounds;
-  const auto has = [](const std::vector<std::string>& effects, const std::string& one) {
-    return std::find(effects.begin(), effects.end(), one) != effects.end();
-  };
   const auto is_dropped = [&](const std::string& other) {
     return !has(diagnosis.missing, other) &&
            std::any_of(rounds.begin(), rounds.end(),
@@ -252,7 +250,7 @@ bool is_another_plant(const Diagnosis& diagnosis) {
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
 std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
-    if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
+    if (has(group, effect)) return Doubt::rivals;
   }
   if (is_outdone(diagnosis, effect)) return Doubt::rivals;
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -60,6 +61,20 @@ TEST(SettledMemo, ServesAContextWithOtherCandidates) {
   const InnovationStage found = settled_once(other, first);
   EXPECT_EQ(found.minus_two_log, marked.minus_two_log);
   EXPECT_TRUE(found.context.problem.candidate_effects.empty());
+}
+
+TEST(SettledMemo, LeavesASearchAsItIs) {
+  SearchContext context = short_record(17);
+  const ModelStage first = first_stage(context);
+  const InnovationSearch without = search_innovations(context, first, {});
+  ASSERT_FALSE(without.final.model.added.empty());
+  context.memo = std::make_shared<SettledMemo>();
+  (void)search_innovations(context, first, {}, {1, {}});
+  EXPECT_GT(context.memo->size_bytes(), 0U);
+  for (const unsigned threads : {1U, 2U}) {
+    context.options.threads = threads;
+    expect_same(search_innovations(context, first, {}).final, without.final);
+  }
 }
 
 TEST(SettledMemo, DropsWhatWasNotAskedForTheLongest) {
