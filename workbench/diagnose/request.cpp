@@ -113,9 +113,9 @@ void require_fixed_present(const DiagnosisRequest& request,
     const bool is_sought = std::any_of(candidates.begin(), candidates.end(),
                                        [&](const auto& one) { return one.name == effect; });
     if (!is_sought) continue;
-    throw config::schema::UsageError(
-        fmt::format("--fix {}: the model has no {}, which is sought; --without {} leaves it out",
-                    name, effect, effect));
+    throw config::schema::UsageError(fmt::format(
+        "--fix {}: the model states no size of {}, which is sought; --without {} leaves it out",
+        name, effect, effect));
   }
 }
 

@@ -31,10 +31,11 @@ std::vector<std::string> rival_words(const selection::Diagnosis& d) {
     out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
   }
   for (const auto& group : d.same_here) {
-    if (!d.rests_on_one_of(group)) continue;
+    // the first line of the verdict says it
+    if (d.verdict == selection::Verdict::missing || !d.rests_on_one_of(group)) continue;
     const std::vector<std::string> others(group.begin() + 1, group.end());
-    out.push_back("The name " + group.front() + " is a choice: on this plant " +
-                  config::schema::listed(others, "or") + " would do as well.");
+    out.push_back("The name " + group.front() + " is a choice: no motion that was tried tells it " +
+                  "from " + config::schema::listed(others, "or") + " on this plant.");
   }
   for (const std::string& name : d.established()) {
     if (name == "load_force" && holds_return_pressure(d)) {

@@ -211,10 +211,9 @@ bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect
   return false;
 }
 
-/// True where the search took another effect before this one, because it left less by more than
-/// chance, and dropped it again: either may stand in the other's place.
+/// True where another effect, which gained more than chance does, left clearly less than this one
+/// in a round and was dropped later: either may stand in the other's place.
 bool is_outdone(const Diagnosis& diagnosis, const std::string& effect) {
-  if (diagnosis.by_innovations) return false;
   const std::vector<Round>& rounds = diagnosis.search.rounds;
   const auto is_dropped = [&](const std::string& other) {
     return !has(diagnosis.missing, other) &&
@@ -229,8 +228,8 @@ bool is_outdone(const Diagnosis& diagnosis, const std::string& effect) {
     if (own == tried.end()) return false;
     return std::any_of(tried.begin(), tried.end(), [&](const Candidate& other) {
       return other.fitted_at_all && other.effects.size() == 1 &&
-             other.validation_rms_m < own->validation_rms_m && other.p_value < kLikelyChance &&
-             is_dropped(other.effects.front());
+             other.validation_rms_m < (1.0 - kRivals) * own->validation_rms_m &&
+             other.p_value < kLikelyChance && is_dropped(other.effects.front());
     });
   });
 }
@@ -252,12 +251,13 @@ std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::s
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
     if (has(group, effect)) return Doubt::rivals;
   }
-  if (is_outdone(diagnosis, effect)) return Doubt::rivals;
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
+  const bool likely_chance =
+      !diagnosis.by_innovations && chance_of(diagnosis.search, effect).p_value > kLikelyChance;
+  // a free run without an offset drifts, whichever effect of several stops it
+  if (likely_chance && is_outdone(diagnosis, effect)) return Doubt::chance;
   if (is_beyond_doubt(diagnosis, effect)) return {};
-  if (!diagnosis.by_innovations && chance_of(diagnosis.search, effect).p_value > kLikelyChance) {
-    return Doubt::chance;
-  }
+  if (likely_chance) return Doubt::chance;
   if (!is_clear_of_remainder(diagnosis, effect)) return Doubt::remainder;
   if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;
   return {};

@@ -94,8 +94,14 @@ TEST_F(DiagnoseRequest, OnlyAndWithoutTheSameEffectAreRefused) {
 
 TEST_F(DiagnoseRequest, AnEffectThatTheModelLacksIsNotKept) {
   request_.selection.fix = {"backlash"};
-  expect_refused(2, "--fix backlash: the model has no backlash, which is sought; --without");
+  expect_refused(
+      2, "--fix backlash: the model states no size of backlash, which is sought; --without");
   request_.without = {"backlash"};
+  EXPECT_NO_THROW((void)prepare(request_));
+  request_.selection.fix = {"transport_delay.delay_s"};
+  expect_refused(2, "--fix transport_delay.delay_s: the model states no size of transport_delay");
+  request_.without.clear();
+  request_.only = {"deadband"};
   EXPECT_NO_THROW((void)prepare(request_));
 }
 

@@ -268,9 +268,12 @@ TEST(Words, ADifferenceBetweenRecordsNamesTheRecordThatDiffers) {
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
-  EXPECT_THAT(remarks(outcome), Contains("The name friction is a choice: on this plant my_formula "
-                                         "would do as well."));
+  ASSERT_EQ(outcome.diagnosis.verdict, selection::Verdict::missing);
   EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr(" (or my_formula in its place)."));
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("is a choice"))));
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  EXPECT_THAT(remarks(outcome), Contains("The name friction is a choice: no motion that was tried "
+                                         "tells it from my_formula on this plant."));
 }
 
 }  // namespace
