@@ -24,16 +24,34 @@ struct CoupledState {
   }
 };
 
+/// How a force from outside, against the motion, acts on the two parts: at the place b of the
+/// sensor, which is where a rig's load is.
+template <class S>
+struct DisturbedParts {
+  S driven = 1.0;            ///< share on the driven part, 1 - b
+  S second_per_kg = S(0.0);  ///< share on the second mass over that mass
+};
+
+template <class Effects, class S>
+DisturbedParts<S> disturbed_parts(const Effects& effects, const S& mass_kg) {
+  const S least_ratio = 0.02;  // a mass of nothing would be moved without limit
+  const S place = effects.sensor_place();
+  return {S(1.0) - place, place / (max(effects.coupled_ratio(), least_ratio) * mass_kg)};
+}
+
 /// The plant's state after the step; the second mass's is kept by the effects. rate(x, a): the
-/// plant's rates while the spring accelerates the driven part by a, m/s2.
+/// plant's rates while the spring accelerates the driven part by a, m/s2. `disturbed_mps2`: a force
+/// from outside against the second mass, over that mass.
 template <class Effects, class State, class S, class Rate>
-State coupled_step(Effects& effects, const State& x, const S& step_s, Rate&& rate) {
+State coupled_step(Effects& effects, const State& x, const S& step_s, const S& disturbed_mps2,
+                   Rate&& rate) {
   using Both = CoupledState<State, S>;
   const S share = effects.coupled_ratio();
   const Both end = runge_kutta_step(Both{x, effects.offset()}, step_s, [&](const Both& at) -> Both {
     const S pull_mps2 = effects.pull_mps2(at.offset);
     const State driven = rate(at.driven, share * pull_mps2);
-    return {driven, {at.offset.offset_mps, (share - S(1.0)) * pull_mps2 - driven.v_mps}};
+    const S ahead_mps2 = (share - S(1.0)) * pull_mps2 - driven.v_mps - disturbed_mps2;
+    return {driven, {at.offset.offset_mps, ahead_mps2}};
   });
   const S most_m = limits::kPosition_m;
   const S most_mps = limits::kSpeed_mps;

@@ -38,13 +38,15 @@ class Ensemble {
   /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
   virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
   /// Holds a force against extension in each lane beside those of the parameters, until the next
-  /// call; ignored by a plant without forces.
+  /// call, at the place of the position sensor where a second mass swings behind a spring; ignored
+  /// by a plant without forces.
   virtual void disturb(const Values& force_N) noexcept = 0;
   /// Moves the rod, and with it the sensor's reading, without physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 
-  /// The integration state of that name ("v_mps", "in_Pa") for state() and set_state(); none when
-  /// the plant has no such state.
+  /// The integration state of that name ("v_mps", "second_mass.offset_m") for state() and
+  /// set_state(); none when neither the plant nor an effect that fits it has such a state. States
+  /// of an effect whose parameters are neutral stand still.
   [[nodiscard]] virtual std::optional<std::size_t> find_state(std::string_view name) const = 0;
   [[nodiscard]] virtual Values state(std::size_t index) const noexcept = 0;
   virtual void set_state(std::size_t index, const Values& values) noexcept = 0;

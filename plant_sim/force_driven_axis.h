@@ -89,8 +89,9 @@ class ForceDrivenAxis {
     });
     effects.prepare(step_s);
     step_s_ = step_s;
-    const S driven_kg =
-        (parameters.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
+    const S mass_kg = parameters.mass_kg + effects.added_mass_kg();
+    const S driven_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
+    disturbed_ = disturbed_parts(effects, mass_kg);
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
     contact_ = effects.contact_levels();
@@ -129,7 +130,7 @@ class ForceDrivenAxis {
   /// Number of parts of a step, fine enough for damping, friction and springs.
   S divisions(const S& drive_V) const {
     const S& v_mps = state.v_mps;
-    S free_N = parameters.gain_N_per_V * drive_V - disturbance_N;
+    S free_N = parameters.gain_N_per_V * drive_V - disturbed_.driven * disturbance_N;
     if (rubs_) {
       free_N -= parameters.damping_N_s_per_m * v_mps +
                 effects.resisting_N(state.y_m, v_mps, [&] { return motion(state, drive_V); });
@@ -152,17 +153,18 @@ class ForceDrivenAxis {
   void integrate(const S& drive_V, const S& step_s) {
     const S from_m = state.y_m;
     const S drive_N = parameters.gain_N_per_V * drive_V;
+    const S disturbed_N = disturbed_.driven * disturbance_N;
     const auto rate = [&](const State& x, const S& further_N) -> State {
-      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N - disturbance_N;
+      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N - disturbed_N;
       const S force_N =
           effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_},
                               [&] { return motion(x, drive_V); });
       return {x.v_mps, force_N * inverse_mass_};
     };
     if (effects.coupled()) {
-      state = coupled_step(effects, state, step_s, [&](const State& x, const S& pull_mps2) {
-        return rate(x, driven_kg_ * pull_mps2);
-      });
+      state = coupled_step(
+          effects, state, step_s, disturbed_.second_per_kg * disturbance_N,
+          [&](const State& x, const S& pull_mps2) { return rate(x, driven_kg_ * pull_mps2); });
     } else {
       state = runge_kutta_step(state, step_s, [&](const State& x) { return rate(x, S(0.0)); });
     }
@@ -175,6 +177,7 @@ class ForceDrivenAxis {
   bool rubs_ = false;
   effects::ContactLevels<S> contact_;
   S driven_kg_, inverse_mass_, spring_rate_;
+  DisturbedParts<S> disturbed_;
   S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
 };
 

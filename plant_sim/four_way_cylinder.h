@@ -146,6 +146,7 @@ class FourWayCylinder {
     bool cushioned;
     effects::ContactLevels<S> contact;
     bool brakes, turns_gradually;
+    DisturbedParts<S> disturbed;
     S valve_gain_m_per_V, most_orifice;
     S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, steady_rate;
     S weight_N;

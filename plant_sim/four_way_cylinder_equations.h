@@ -175,7 +175,8 @@ typename FourWayCylinder<S, Design>::State FourWayCylinder<S, Design>::rate(
   const Volumes volume = volumes(y_m);
   S in_beta_Pa = p.bulk_modulus_Pa;
   S out_beta_Pa = p.bulk_modulus_Pa;
-  S force_N = pressure_force_N(x) - p.damping_N_s_per_m * v_mps - disturbance_N;
+  S force_N =
+      pressure_force_N(x) - p.damping_N_s_per_m * v_mps - derived_.disturbed.driven * disturbance_N;
   if constexpr (kEffects) {
     in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
     out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);

@@ -90,6 +90,7 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.lag_rate = spool.lag_rate_per_s;
   const S mass_kg = p.mass_kg + effects.added_mass_kg();
   derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
+  derived_.disturbed = disturbed_parts(effects, mass_kg);
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
   derived_.contact = effects.contact_levels();
   derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));
@@ -123,7 +124,7 @@ S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
 template <class S, class Design>
 S FourWayCylinder<S, Design>::fast_mps() const {
   const S v_mps = state.v_mps;
-  S push_N = S(0.0) - disturbance_N;
+  S push_N = S(0.0) - derived_.disturbed.driven * disturbance_N;
   if (effects.any()) {
     push_N = effects.net_force_N(
         state.y_m, {v_mps, S(0.0), push_N, derived_.mass_kg * S(1.0 / derived_.step_s)},
@@ -136,7 +137,8 @@ S FourWayCylinder<S, Design>::fast_mps() const {
 template <class S, class Design>
 S FourWayCylinder<S, Design>::free_N() const {
   const S& v_mps = state.v_mps;
-  return pressure_force_N(state) - parameters.damping_N_s_per_m * v_mps - disturbance_N -
+  return pressure_force_N(state) - parameters.damping_N_s_per_m * v_mps -
+         derived_.disturbed.driven * disturbance_N -
          effects.resisting_N(state.y_m, v_mps, [&] { return motion(state); });
 }
 
@@ -253,7 +255,8 @@ PLANT_SIM_WHOLE void FourWayCylinder<S, Design>::integrate(const S& u_V, const S
     return rate<kLimits, kEffects>(x, u_V, from_y_m, pull_mps2);
   };
   if (kEffects && effects.coupled()) {
-    state = coupled_step(effects, state, step_s, coupled_rate);
+    state = coupled_step(effects, state, step_s, derived_.disturbed.second_per_kg * disturbance_N,
+                         coupled_rate);
   } else {
     state = runge_kutta_step(
         state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });

@@ -80,7 +80,14 @@ class InLanes final : public LaneEnsemble {
                                        S& value) { enter(formula.name, info.name, &value); });
     model_.initial.visit(
         [&](const ParameterInfo& info, S& value) { enter("initial", info.name, &value); });
-    model_.state.visit([&](const char* name, S& value) { enter_state(name, &value); });
+    const auto enter_one = [&](const char* name, S& value) { enter_state(name, &value); };
+    model_.state.visit(enter_one);
+    model_.effects.each_memory([&](auto tag, auto& memory) {
+      using Effect = typename decltype(tag)::Type;
+      if constexpr (effects::fits<Effect, Model>() && requires { memory.visit(enter_one); }) {
+        memory.visit(enter_one);
+      }
+    });
   }
 
   void start(double reading_m) noexcept override {

@@ -6,6 +6,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/greybox/observer_correction.h"
+#include "estimator/greybox/sensor_place.h"
 
 namespace estimator::greybox {
 
@@ -96,6 +97,8 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     states.push_back(ensemble_->find_state(name).value());
   }
   const auto disturbed = static_cast<Eigen::Index>(states.size());
+  const auto offset = ensemble_->find_state(kSecondMassOffset);
+  const Ensemble::Values place = sensor_place(*ensemble_);
   // otherwise the disturbance is a speed
   const bool forces = ensemble_->find("load_force.force_N").has_value();
   const auto line_m = [&](std::size_t lane, Eigen::Index k) {
@@ -129,6 +132,13 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
         values[lane] += gains[lane]->gain(static_cast<Eigen::Index>(i), k) * error_m[lane];
       }
       ensemble_->set_state(states[i], values);
+      if (states[i] != offset) continue;
+      Ensemble::Values back_m{};  // an offset is corrected with the reading held
+      for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+        back_m[lane] =
+            -place[lane] * gains[lane]->gain(static_cast<Eigen::Index>(i), k) * error_m[lane];
+      }
+      ensemble_->shift(back_m);
     }
     predicted_.correction_m[row] = ensemble_->state(position_)[0] - predicted_.rod_m[row];
     Ensemble::Values force_N{};

@@ -157,6 +157,14 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
+  /// Place of the sensor: 0 on the driven part, 1 on the second mass.
+  [[nodiscard]] S sensor_place() const {
+    S sum = 0.0;
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::sensor_place(p); });
+    return sum;
+  }
+
   [[nodiscard]] S coupling_rate_per_s() const {
     S fastest = 0.0;
     this->template for_each_active<Site::coupling>(

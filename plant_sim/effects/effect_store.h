@@ -26,6 +26,12 @@ class EffectStore {
     each_index([&](auto i) { f(Tag<Effect<i>>{}, std::get<i>(parameters_)); });
   }
 
+  /// Calls f(effect type tag, memory) for each effect in the order of the table.
+  template <class F>
+  void each_memory(F&& f) {
+    each_index([&](auto i) { f(Tag<Effect<i>>{}, std::get<i>(memory_)); });
+  }
+
   /// Call after a change of parameters: clamps them to their ranges and determines the active
   /// effects. Allocates only at the first call and when the step changes.
   void prepare(double step_s) {

@@ -58,6 +58,12 @@ struct SecondMass {
   };
   struct Memory {
     CouplingOffset<S> offset;
+
+    template <class V>
+    void visit(V&& v) {
+      v("second_mass.offset_m", offset.offset_m);
+      v("second_mass.offset_mps", offset.offset_mps);
+    }
   };
 
   /// m2 over M.
@@ -67,6 +73,11 @@ struct SecondMass {
 
   static S coupling_rate_per_s(const Parameters& p) { return S(kTwoPi) * p.resonance_Hz; }
 
+  /// b; 0 for a rigid mass.
+  static S sensor_place(const Parameters& p) {
+    return select(p.resonance_Hz > S(0.0), p.sensor_ratio, S(0.0));
+  }
+
   /// w^2 z + 2 damping w z'.
   static S pull_mps2(const Parameters& p, const CouplingOffset<S>& z) {
     const S rate = coupling_rate_per_s(p);
@@ -74,7 +85,7 @@ struct SecondMass {
   }
 
   static S reading_m(const Parameters& p, const Memory& memory, const S& y_m) {
-    return y_m + select(p.resonance_Hz > S(0.0), p.sensor_ratio * memory.offset.offset_m, S(0.0));
+    return y_m + sensor_place(p) * memory.offset.offset_m;
   }
 
  private:

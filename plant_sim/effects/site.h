@@ -19,6 +19,7 @@
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
 //                 S coupling_rate_per_s(p)                   its resonance, rad/s,
+//                 S sensor_place(p)                          place of the sensor, 0 to 1 behind it,
 //                 S pull_mps2(p, offset)                     and what the spring pulls; the plant
 //                 CouplingOffset<S> Memory::offset           integrates it (coupled_step.h)
 //
@@ -29,7 +30,8 @@
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have
 // `void accept(p, memory, travel_m, v_mps)`, called once per accepted integration step,
-// `void Memory::prepare(step_s)`, called outside of steps, and `void Memory::reset()`.
+// `void Memory::prepare(step_s)`, called outside of steps, `void Memory::reset()`, and
+// `void Memory::visit(v)`, which calls v(name, value) for each state integrated with the plant's.
 // A new site is a line here, a call in EffectSet and a place in a plant.
 #pragma once
 

@@ -42,6 +42,17 @@ std::string size_words(const selection::RecordChecks& checks, const greybox::Dat
   return present::motion_finding(checks.motion, record.command_column, record.position_column);
 }
 
+/// True where a model explains how the position follows the command: what the response alone looks
+/// like is then the plant's doing, a dead time apart, for which clocks may be to blame.
+bool is_explained(const selection::Diagnosis& d, const greybox::CommandResponse& response) {
+  const bool explained = d.verdict == selection::Verdict::nothing_missing ||
+                         d.verdict == selection::Verdict::missing ||
+                         d.verdict == selection::Verdict::learned ||
+                         d.verdict == selection::Verdict::changing;
+  return explained && response.delay_s >= 0.0 &&
+         std::find(d.missing.begin(), d.missing.end(), "transport_delay") == d.missing.end();
+}
+
 void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const selection::RecordChecks& checks = *d.checks;
@@ -55,7 +66,7 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
     if (checks.turned_sign()) break;
-    if (said.contains(records[i].name)) continue;
+    if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
     for (const std::string& text :
          present::response_findings(checks.responses[i], records[i].position_column)) {
       out.push_back(records[i].name + ": " + text + ".");

@@ -1,11 +1,12 @@
 // A model linearised about its own trajectory: how a small change of state, disturbance or supply
 // pressure at one sample arrives at the next.
 //
-//   z(k+1) = A(k) z(k) + b_p(k) dPs(k),   z = (y, v, Pi, Po, F)  or what the plant has of it
+//   x(k+1) = A(k) x(k) + b_p(k) dPs(k),   x = (y, v, Pi, Po, z, z', F)  or what the plant has of it
 //
-// by difference quotients of the plant's own step, all in the lanes of one ensemble. Spool states
-// are left out: the command determines them. Dry friction and play are switched off for the
-// quotients: a slope across stick and slip says nothing.
+// by difference quotients of the plant's own step, all in the lanes of ensembles. y is the position
+// that the sensor is at; z, z' are the offset and its speed of a second mass. Spool states are left
+// out: the command determines them. Dry friction and play are switched off for the quotients: a
+// slope across stick and slip says nothing.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +19,7 @@
 
 namespace estimator::greybox::disturbance {
 
-inline constexpr Eigen::Index kMostStates = 5;  ///< F included
+inline constexpr Eigen::Index kMostStates = 7;  ///< F included
 using StateVector = Eigen::Matrix<double, kMostStates, 1>;
 using StateMatrix = Eigen::Matrix<double, kMostStates, kMostStates>;
 

@@ -24,6 +24,9 @@ constexpr std::size_t kMostLineFinalists = 2;
 /// Lead of the likeliest candidate that another may make up for when its noise model and parameters
 /// have converged together.
 constexpr double kContends_nats = 30.0;
+/// The same for an effect behind a spectral line, as a share of its lead: a line is exact at once,
+/// and stands for a resonance whose parameters and noise model have yet to find each other.
+constexpr double kContendsWithLine = 0.7;
 
 /// Drops effects that have left their range since others came in: these, or a law that the library
 /// does not have, are what they stood for.
@@ -64,8 +67,9 @@ class RoundTrials {
     trials_ = std::move(trials);
     sort_by_gain(trials_);
     std::vector<std::size_t> finalists;
-    for (std::size_t i = 0; i < std::min(kRoundFinalists, trials_.size()); ++i) {
-      if (trials_[i].candidate.gain_nats > 0.0) finalists.push_back(i);
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      const bool promising = i < kRoundFinalists && trials_[i].candidate.gain_nats > 0.0;
+      if (promising || !trials_[i].elsewhere.empty()) finalists.push_back(i);
     }
     settle(finalists);
   }
@@ -138,7 +142,10 @@ class RoundTrials {
   void settle(std::size_t i) {
     InnovationCandidate& candidate = trials_[i].candidate;
     InnovationTrial unknown = trials_[i];
-    if (candidate.settled) unknown.starts = {trials_[i].starts.back()};
+    if (candidate.settled) {
+      unknown.starts = {trials_[i].starts.back()};
+      unknown.elsewhere.clear();
+    }
     InnovationStage reached = settled(plain_, stage_, unknown);
     if (!(reached.minus_two_log < stages_[i].minus_two_log)) return;
     take(i, std::move(reached));
@@ -166,10 +173,14 @@ class RoundTrials {
 
   void polish_contenders(std::size_t best) {
     const double best_nats = trials_[best].candidate.gain_nats;
+    const bool is_line = trials_[best].candidate.effect.empty();
     std::vector<std::size_t> contenders;
     for (std::size_t i = 0; i < trials_.size(); ++i) {
       const InnovationCandidate& candidate = trials_[i].candidate;
-      const bool contends = candidate.gain_nats > best_nats - kContends_nats;
+      double lead_nats = kContends_nats;
+      if (is_line && !candidate.effect.empty())
+        lead_nats = std::max(lead_nats, kContendsWithLine * best_nats);
+      const bool contends = candidate.gain_nats > best_nats - lead_nats;
       if (contends && candidate.settled && polished_[i] == 0) contenders.push_back(i);
     }
     const unsigned threads = plain_.options.threads;
@@ -259,6 +270,9 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptio
   const bool is_effect = !trials.candidate(chosen).effect.empty();
   stage = InnovationStage(std::move(trials.stage(chosen)));
   if (!effects_too) return true;
+  if (is_effect) {
+    if (auto other = without_lines_of_resonance(plain, stage)) stage = *std::move(other);
+  }
   drop_out_of_range(plain, stage, dropped);
   if (is_effect) reconsider_sites(plain, stage);
   return true;

@@ -9,6 +9,7 @@
 
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/revived_refinements.h"
 #include "estimator/greybox/selection/settled_memo.h"
 
@@ -79,9 +80,10 @@ double distance(const FitSummary& fitted, const FitSummary& other, double floor_
 }
 
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
-/// are and, as a disturbance that was not known may have bent them, where the model file has them.
-void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
-           InnovationFit effort, SimulationWidth width) {
+/// are and, in a first turn, at other values too.
+void refit(const SearchContext& plain, InnovationStage& stage,
+           const std::optional<Eigen::VectorXd>& other_start, InnovationFit effort,
+           SimulationWidth width) {
   const disturbance::InnovationData data = disturbance::innovation_data(
       plain.problem.model, plain.problem.data, stage.model.fitted.parameters,
       stage.model.fitted.theta, stage.linear, stage.noise);
@@ -103,12 +105,12 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   const auto try_start = [&](Eigen::VectorXd start, double enough) {
     try_other({all.parameters, std::move(start)}, enough);
   };
-  if (from_file_too) {
-    try_start(with_file_values(stage.context, stage.model), 0.0);
+  if (other_start) {
+    try_start(*other_start, 0.0);
     for (const Eigen::VectorXd& start : resized_plays(fitted)) try_start(start, 0.0);
   }
   for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
-  if (from_file_too && effort == InnovationFit::converged) {
+  if (other_start && effort == InnovationFit::converged) {
     const ModelStage found{stage.model.added, fitted};
     for (const ParameterSubset& other : alternative_refinements(plain, found)) {
       if (plain.cancelled()) break;
@@ -161,6 +163,16 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
   stage.model = std::move(model);
   stage.noise = start;
   stage.context = plain;
+  // a disturbance that was not known may have bent the parameters
+  std::optional<Eigen::VectorXd> other = with_file_values(plain, stage.model);
+  if (!(start.noise.sensor_m > 0.0)) {
+    FitSummary& fitted = stage.model.fitted;
+    const LikeliestStart likeliest =
+        likeliest_start(plain, {{fitted.parameters, fitted.theta}, {fitted.parameters, *other}},
+                        start, width.threads);
+    if (likeliest.start.start != fitted.theta)
+      *other = std::exchange(fitted.theta, likeliest.start.start);
+  }
   InnovationStage best;
   for (int i = 0; i < turns && !plain.cancelled(); ++i) {
     const FitSummary& fitted = stage.model.fitted;
@@ -182,7 +194,8 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
                                             fitted.theta);
     }
     estimate_noise();
-    refit(plain, stage, i == 0, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
+    refit(plain, stage, other, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
+    other.reset();
     const double gain = penalised(best) - penalised(stage);
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -124,6 +125,31 @@ double promised_nats(const InnovationStage& stage) {
   return most_nats;
 }
 
+namespace {
+
+/// A resonance as it was screened on either side of the spring, the plant as the stage and as the
+/// file have it.
+std::vector<std::vector<ParameterSubset>> starts_elsewhere(const InnovationStage& stage,
+                                                           const ScreeningResult& screened) {
+  std::vector<std::vector<ParameterSubset>> sides;
+  for (const ParameterSubset& start : screened.starts) {
+    const bool known = std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+      return side.front().parameters.size() == start.parameters.size();
+    });
+    ModelStage at = stage.model;
+    at.fitted.theta = start.start;
+    std::vector<ParameterSubset> side = resonance_starts(start);
+    if (known || side.empty()) continue;
+    const std::vector<ParameterSubset> more =
+        resonance_starts({start.parameters, with_file_values(stage.context, at)});
+    side.insert(side.end(), more.begin(), more.end());
+    sides.push_back(std::move(side));
+  }
+  return sides;
+}
+
+}  // namespace
+
 std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   const SearchContext& context = stage.context;
   const double floor_m = context.problem.data.noise_floor_m;
@@ -162,6 +188,10 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
     trial.candidate.gain_nats = gain;
     trial.penalty_nats = penalty;
     trial.starts = {with_effect(stage.model, trial.candidate.effect, std::move(start.fitted))};
+  }
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (!trials[i].starts.empty() && expected_nats(stage, screened[i]) >= kEvidence_nats)
+      trials[i].elsewhere = starts_elsewhere(stage, screened[i]);
   }
   return trials;
 }
@@ -259,10 +289,21 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   const bool is_line = trial.candidate.effect.empty();
   if (is_line) noise.lines.push_back(trial.candidate.line);
   InnovationStage best;
-  for (const ModelStage& start : trial.starts) {
+  const auto try_start = [&](const ModelStage& start) {
     const NoiseModel own = is_line ? noise : with_likelier_sites(plain, start, noise);
     InnovationStage one = settled(plain, start, own, 1, SimulationWidth{});
     if (one.minus_two_log < best.minus_two_log) best = std::move(one);
+  };
+  for (const ModelStage& start : trial.starts) {
+    if (trial.simulated || trial.candidate.gain_nats > 0.0) try_start(start);
+  }
+  for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
+    LikeliestStart likeliest = likeliest_start(plain, side, noise, SimulationWidth{}.threads);
+    if (!(likeliest.minus_two_log < stage.minus_two_log)) continue;
+    ModelStage start = trial.starts.front();
+    start.fitted.parameters = std::move(likeliest.start.parameters);
+    start.fitted.theta = std::move(likeliest.start.start);
+    try_start(start);
   }
   return best;
 }

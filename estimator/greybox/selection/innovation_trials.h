@@ -30,6 +30,9 @@ struct InnovationTrial {
   std::vector<ModelStage> starts;  ///< fitted with the stage's gains, with the weak observer
   double penalty_nats = 0.0;
   bool simulated = false;  ///< promising in a simulation with the weak observer
+  /// Groups of further starts, of each the one that is likeliest with a predictor of its own: the
+  /// stage's gains take a resonance for a force.
+  std::vector<std::vector<ParameterSubset>> elsewhere;
 };
 
 /// The noise model with a line at another site; what its waves were there is forgotten.

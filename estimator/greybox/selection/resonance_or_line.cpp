@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,7 +42,35 @@ std::string ringing_effect(const InnovationStage& stage) {
   return "";
 }
 
+/// The stage's resonance, Hz; NaN: none.
+double resonance_Hz(const InnovationStage& stage) {
+  for (const std::string& effect : stage.model.added) {
+    const double found_Hz = stage.model.fitted.value(effect + std::string(kFrequency));
+    if (std::isfinite(found_Hz)) return found_Hz;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
+
+std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& plain,
+                                                          const InnovationStage& stage) {
+  const double found_Hz = resonance_Hz(stage);
+  disturbance::NoiseModel noise;
+  noise.noise = stage.noise.noise;
+  for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
+    if (is_on(stage.noise.lines[i], found_Hz)) continue;
+    noise.lines.push_back(stage.noise.lines[i]);
+    if (i < stage.noise.waves.size()) noise.waves.push_back(stage.noise.waves[i]);
+  }
+  const auto fewer = static_cast<double>(stage.noise.lines.size() - noise.lines.size());
+  if (fewer == 0.0 || plain.cancelled()) return {};
+  InnovationStage other =
+      settled(plain, stage.model, noise, kMostTurns, wide(plain.options.threads));
+  const double lines_nats = fewer * (kEvidence_nats + kPerParameter_nats * kParametersOfLine);
+  if (!(penalised(other) < penalised(stage) + 2.0 * lines_nats)) return {};
+  return other;
+}
 
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
   if (!p.name.ends_with(kFrequency)) return false;

@@ -13,6 +13,11 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p,
                                      double theta);
 
+/// The stage without the lines at the frequency of its resonance, where that explains what they
+/// stood for before it was found.
+[[nodiscard]] std::optional<InnovationStage> without_lines_of_resonance(
+    const SearchContext& plain, const InnovationStage& stage);
+
 struct LineInstead {
   InnovationStage without;        ///< the stage without the resonance
   InnovationStage stage;          ///< with the line

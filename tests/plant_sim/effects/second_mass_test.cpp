@@ -58,6 +58,29 @@ TEST(SecondMass, SwingsOnAnAxisAsTwoFreeBodiesDo) {
   }
 }
 
+/// From outside, a force acts on the mass that the sensor is on: by the closed form with the two
+/// bodies exchanged where that is the second.
+TEST(SecondMass, IsPushedFromOutsideWhereTheSensorIs) {
+  constexpr double kForce_N = 35.0;
+  for (const double place : {0.0, 1.0}) {
+    const Body body{0.3, 34.0, 0.03, place};
+    auto plant = at_rest<Axis>();
+    plant->parameters.damping_N_s_per_m = 0.0;
+    hang(*plant, body);
+    plant->disturbance_N = -kForce_N;  // a resistance
+    const Body seen{place > 0.5 ? 1.0 - body.mass_ratio : body.mass_ratio, body.resonance_Hz,
+                    body.damping_ratio, 0.0};
+    const double w = 2.0 * std::numbers::pi * body.resonance_Hz;
+    const double swing_m = kForce_N / (100.0 * (1.0 - seen.mass_ratio) * w * w);
+    for (int k = 1; k <= 200; ++k) {
+      hold(*plant, 0.0, 1e-3);
+      EXPECT_NEAR(plant->effects.reading_m(plant->state.y_m),
+                  reading_under_force_m(seen, kForce_N, 100.0, k * 1e-3), 1e-3 * swing_m)
+          << place;
+    }
+  }
+}
+
 TEST(SecondMass, AddsNothingToTheMassOfSlowMotion) {
   auto rigid = at_rest<Axis>();
   auto flexible = at_rest<Axis>();

@@ -74,6 +74,13 @@ TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt8HzAnd500HzSampling) {
   expect_named({.resonance_Hz = 8.0, .sample_rate_Hz = 500.0, .seed = 4});
 }
 
+// The rig's own force noise rings the spring as the command does.
+TEST(HiddenSecondMass, IsNamedWhereAForceDisturbsTheMassThatTheSensorIsOn) {
+  expect_named({.at_load = true, .sample_rate_Hz = 500.0, .second_disturbance_N = 2.0, .seed = 9});
+  expect_named(
+      {.resonance_Hz = 12.0, .sample_rate_Hz = 500.0, .driven_disturbance_N = 5.0, .seed = 10});
+}
+
 // The plant's parameters follow a resonance some way: which side the sensor is on shows in a fit.
 TEST(HiddenSecondMass, IsTriedWithTheSensorOnEitherSideOfItsSpring) {
   for (const bool at_load : {false, true}) {

@@ -1,7 +1,9 @@
 // Records of an axis with a second mass behind a spring, from the matrix exponential of its four
 // linear states: no code of the product's.
 //
-//   m1 x'' = g u - d x' + k (q - x) + c (q' - x'),   m2 q'' = -k (q - x) - c (q' - x')
+//   m1 x'' = g u - d x' + k (q - x) + c (q' - x') + F1,   m2 q'' = -k (q - x) - c (q' - x') + F2
+//
+// F1, F2  disturbance from outside on either mass, a first-order Markov process
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +31,9 @@ struct Rig {
   double kp_V_per_m = 300.0;
   double kd_V_s_per_m = 12.0;
   int delay_samples = 0;
+  double driven_disturbance_N = 0.0;  ///< standard deviation of F1
+  double second_disturbance_N = 0.0;  ///< that of F2
+  double disturbance_corner_Hz = 2.0;
   unsigned seed = 1;
 };
 
@@ -47,7 +52,7 @@ inline Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   return sum;
 }
 
-/// States x, x', q, q', and the held force as the fifth.
+/// States x, x', q, q', and the held forces on the driven and on the second mass.
 inline Eigen::MatrixXd transition(const Rig& rig) {
   const double w = 2.0 * std::numbers::pi * rig.resonance_Hz;
   const double ratio = std::max(rig.mass_ratio, 1e-6);
@@ -55,12 +60,12 @@ inline Eigen::MatrixXd transition(const Rig& rig) {
   const double m2 = ratio * rig.mass_kg;
   const double k = m1 * m2 / (m1 + m2) * w * w;
   const double c = m1 * m2 / (m1 + m2) * 2.0 * rig.damping_ratio * w;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(5, 5);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6, 6);
   A(0, 1) = 1.0;
   A.row(1) << -(k + rig.stiffness_N_per_m) / m1, -(c + rig.damping_N_s_per_m) / m1, k / m1, c / m1,
-      1.0 / m1;
+      1.0 / m1, 0.0;
   A(2, 3) = 1.0;
-  A.row(3) << k / m2, c / m2, -k / m2, -c / m2, 0.0;
+  A.row(3) << k / m2, c / m2, -k / m2, -c / m2, 0.0, 1.0 / m2;
   return exponential(A / rig.sample_rate_Hz);
 }
 
@@ -84,12 +89,17 @@ inline config::record::Record record(const Rig& rig) {
     return sum;
   };
   const Eigen::MatrixXd step = transition(rig);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(5);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(6);
   x[0] = x[2] = reference_m(0.0);
   std::vector<double> past_V(static_cast<std::size_t>(rig.delay_samples) + 1, 0.0);
   config::record::Record out;
   double last_m = x[0];
   double speed_mps = 0.0;
+  std::mt19937 outside(rig.seed + 1000);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  double disturbance = normal(outside);  // of standard deviation 1
+  const double keep =
+      std::exp(-2.0 * std::numbers::pi * rig.disturbance_corner_Hz / rig.sample_rate_Hz);
   const auto samples = std::lround(rig.duration_s * rig.sample_rate_Hz);
   for (long n = 0; n < samples; ++n) {
     const double t_s = static_cast<double>(n) * sample_s;
@@ -103,7 +113,9 @@ inline config::record::Record record(const Rig& rig) {
     out.y_m.push_back(kMiddle_m + y_m);
     past_V.insert(past_V.begin(), u_V);
     past_V.pop_back();
-    x[4] = rig.gain_N_per_V * past_V.back();
+    x[4] = rig.gain_N_per_V * past_V.back() + rig.driven_disturbance_N * disturbance;
+    x[5] = rig.second_disturbance_N * disturbance;
+    disturbance = keep * disturbance + std::sqrt(1.0 - keep * keep) * normal(outside);
     x = (step * x).eval();
   }
   return out;

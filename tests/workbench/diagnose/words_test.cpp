@@ -265,6 +265,23 @@ TEST(Words, ADifferenceBetweenRecordsNamesTheRecordThatDiffers) {
             "mass_kg is 60.0 +- 0.5 kg in b.csv and 50.0 +- 0.5 kg elsewhere");
 }
 
+TEST(Words, AResponseThatTheModelExplainsIsNoFaultOfTheRecord) {
+  ExampleReport outcome;
+  outcome.input.problem.data.records.resize(1);
+  outcome.input.problem.data.records.front().name = "bench.csv";
+  selection::RecordChecks checks;
+  checks.responses = {{-0.8, 0.08}};
+  outcome.diagnosis.checks = checks;
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("against the command"))));
+  EXPECT_THAT(remarks(outcome), testing::Not(Contains(HasSubstr("late"))));
+  outcome.diagnosis.missing = {"transport_delay"};
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("clocks that are shifted")));
+  outcome.diagnosis.missing.clear();
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("against the command")));
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("80 ms late")));
+}
+
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};

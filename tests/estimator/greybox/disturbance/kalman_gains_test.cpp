@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/disturbance/predictor.h"
 #include "estimator/greybox/disturbance/riccati_lanes.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "tests/estimator/greybox/disturbance/axis_record.h"
@@ -117,7 +118,8 @@ KalmanGains by_joseph(const Linearisation& model, const Dataset& record,
   const double decay = std::exp(-2.0 * std::numbers::pi * noise.corner_Hz * record.sample_time_s);
   StateMatrix q = StateMatrix::Zero();
   q(0, 0) = noise.walk_m * noise.walk_m;
-  q(4, 4) = (1.0 - decay * decay) * noise.disturbance_sd * noise.disturbance_sd;
+  q(kDisturbance, kDisturbance) =
+      (1.0 - decay * decay) * noise.disturbance_sd * noise.disturbance_sd;
   const double r = noise.sensor_m * noise.sensor_m;
   StateMatrix p = start;
   for (Eigen::Index k = 0; k < samples; ++k) {
@@ -127,13 +129,13 @@ KalmanGains by_joseph(const Linearisation& model, const Dataset& record,
     }
     const double s = p(0, 0) + r;
     const StateVector gain = p.col(0) / s;
-    result.gains.gain.col(k) << gain.head(count), gain[4];
+    result.gains.gain.col(k) << gain.head(count), gain[kDisturbance];
     result.gains.scale[k] = floor_m / std::sqrt(s);
     if (record.valid[row] != 0) result.log_determinant += std::log(s / (floor_m * floor_m));
     StateMatrix rest = StateMatrix::Identity();
     rest.col(0) -= gain;
     StateMatrix a = model.transition[row];
-    a(4, 4) = decay;
+    a(kDisturbance, kDisturbance) = decay;
     p = (a * (rest * p * rest.transpose() + r * gain * gain.transpose()) * a.transpose() + q)
             .eval();
   }
@@ -160,7 +162,7 @@ TEST(KalmanGains, SeveralNoiseModelsHaveEachTheGainsOfTheTextbooksRecursion) {
   for (std::size_t i = 0; i < noise.size(); ++i) {
     StateMatrix start = StateMatrix::Zero();
     start(0, 0) = std::pow(noise[i].sensor_m, 2);
-    start(4, 4) = std::pow(noise[i].disturbance_sd, 2);
+    start(kDisturbance, kDisturbance) = std::pow(noise[i].disturbance_sd, 2);
     const KalmanGains truth = by_joseph(model, record, noise[i], 3e-6, start);
     EXPECT_LT((found[i].gains.gain - truth.gains.gain).norm(), 1e-7 * truth.gains.gain.norm());
     EXPECT_LT((found[i].gains.scale - truth.gains.scale).norm(), 1e-9 * truth.gains.scale.norm());
@@ -223,7 +225,7 @@ TEST(KalmanGains, OfAnActuatorAreThoseOfTheTextbooksRecursionToo) {
   StateMatrix start = StateMatrix::Zero();
   start(0, 0) = 9e-12;
   start.block<2, 2>(2, 2) << 1e10, -1e10, -1e10, 1e10;
-  start(4, 4) = 625.0;
+  start(kDisturbance, kDisturbance) = 625.0;
   const KalmanGains found = kalman_gains(model, record, noise, 3e-6);
   const KalmanGains truth = by_joseph(model, record, noise, 3e-6, start);
   for (Eigen::Index i = 0; i < 5; ++i) {

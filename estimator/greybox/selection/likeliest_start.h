@@ -1,0 +1,31 @@
+// Where the parameters of a model start when predictors of their own judge them: with the gains of
+// another start, or of a model without a resonance, a fit sees only what those leave.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "estimator/greybox/disturbance/noise_model.h"
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+struct LikeliestStart {
+  ParameterSubset start;
+  /// With its noise model, priors included; NaN for an only start, which is not evaluated.
+  double minus_two_log = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The likeliest of `starts` (not empty), each linearised and with a noise model searched from
+/// `noise`; the first where nothing is likelier.
+[[nodiscard]] LikeliestStart likeliest_start(const SearchContext& plain,
+                                             std::vector<ParameterSubset> starts,
+                                             const disturbance::NoiseModel& noise,
+                                             unsigned threads);
+
+/// Models with the resonance of `start`: shares of the mass and a damping that structures have, the
+/// sensor, where it is free, on the second mass; none for a model without one.
+[[nodiscard]] std::vector<ParameterSubset> resonance_starts(const ParameterSubset& start);
+
+}  // namespace estimator::greybox::selection
