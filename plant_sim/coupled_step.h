@@ -24,19 +24,23 @@ struct CoupledState {
   }
 };
 
-/// How a force from outside, against the motion, acts on the two parts: at the place b of the
-/// sensor, which is where a rig's load is.
+/// A force from outside whose place is not given acts where the sensor is.
+inline constexpr double kPlaceOfSensor = -1.0;
+
+/// How a force from outside, against the motion, acts on the two parts.
 template <class S>
 struct DisturbedParts {
-  S driven = 1.0;            ///< share on the driven part, 1 - b
+  S driven = 1.0;            ///< share on the driven part
   S second_per_kg = S(0.0);  ///< share on the second mass over that mass
 };
 
+/// `place`: 0 on the driven part, 1 on the second mass, or kPlaceOfSensor.
 template <class Effects, class S>
-DisturbedParts<S> disturbed_parts(const Effects& effects, const S& mass_kg) {
+DisturbedParts<S> disturbed_parts(const Effects& effects, const S& mass_kg, const S& place) {
   const S least_ratio = 0.02;  // a mass of nothing would be moved without limit
-  const S place = effects.sensor_place();
-  return {S(1.0) - place, place / (max(effects.coupled_ratio(), least_ratio) * mass_kg)};
+  const S given = select(place < S(0.0), effects.sensor_place(), place);
+  const S second = select(effects.coupling_rate_per_s() > S(0.0), given, S(0.0));
+  return {S(1.0) - second, second / (max(effects.coupled_ratio(), least_ratio) * mass_kg)};
 }
 
 /// The plant's state after the step; the second mass's is kept by the effects. rate(x, a): the

@@ -38,9 +38,11 @@ class Ensemble {
   /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
   virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
   /// Holds a force against extension in each lane beside those of the parameters, until the next
-  /// call, at the place of the position sensor where a second mass swings behind a spring; ignored
-  /// by a plant without forces.
+  /// call; ignored by a plant without forces.
   virtual void disturb(const Values& force_N) noexcept = 0;
+  /// Place of that force where a second mass swings behind a spring: 0 on the driven part, 1 on the
+  /// second mass, kPlaceOfSensor as at first. Ignored as above.
+  virtual void place_disturbance(double place) noexcept = 0;
   /// Moves the rod, and with it the sensor's reading, without physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 

@@ -74,7 +74,8 @@ class ForceDrivenAxis {
   Initial initial;
   State state;
   effects::Effects<S> effects;
-  S disturbance_N = 0.0;  ///< force against extension from outside of the model
+  S disturbance_N = 0.0;                 ///< force against extension from outside of the model
+  S disturbance_place = kPlaceOfSensor;  ///< as disturbed_parts()
 
   void reset() {
     state = {initial.y_m, initial.v_mps};
@@ -91,7 +92,7 @@ class ForceDrivenAxis {
     step_s_ = step_s;
     const S mass_kg = parameters.mass_kg + effects.added_mass_kg();
     const S driven_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
-    disturbed_ = disturbed_parts(effects, mass_kg);
+    disturbed_ = disturbed_parts(effects, mass_kg, disturbance_place);
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
     contact_ = effects.contact_levels();

@@ -122,7 +122,8 @@ class FourWayCylinder {
   Initial initial;
   State state;
   effects::Effects<S> effects;
-  S disturbance_N = 0.0;  ///< force against extension from outside of the model
+  S disturbance_N = 0.0;                 ///< force against extension from outside of the model
+  S disturbance_place = kPlaceOfSensor;  ///< as disturbed_parts()
 
   /// Resets to the initial state; parameters are kept.
   void reset();

@@ -90,7 +90,7 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.lag_rate = spool.lag_rate_per_s;
   const S mass_kg = p.mass_kg + effects.added_mass_kg();
   derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
-  derived_.disturbed = disturbed_parts(effects, mass_kg);
+  derived_.disturbed = disturbed_parts(effects, mass_kg, disturbance_place);
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
   derived_.contact = effects.contact_levels();
   derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));

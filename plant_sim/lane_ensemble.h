@@ -40,6 +40,7 @@ class LaneEnsemble : public Ensemble {
   /// The same for an integration state.
   void enter_state(const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
+  void note_change() { changed_ = true; }
   /// True when a parameter has been set since the last call.
   [[nodiscard]] bool takes_changes() { return std::exchange(changed_, false); }
   [[nodiscard]] const formula::Formulas& formulas() const { return formulas_; }
@@ -107,6 +108,14 @@ class InLanes final : public LaneEnsemble {
   void disturb(const Values& force_N) noexcept override {
     if constexpr (requires { model_.disturbance_N; }) {
       model_.disturbance_N = S::load(force_N.data());
+    }
+  }
+  void place_disturbance(double place) noexcept override {
+    if constexpr (requires { model_.disturbance_place; }) {
+      if (all(model_.disturbance_place <= S(place)) && all(model_.disturbance_place >= S(place)))
+        return;
+      model_.disturbance_place = place;
+      note_change();
     }
   }
   void shift(const Values& by_m) noexcept override { model_.state.y_m += S::load(by_m.data()); }

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "plant_sim/coupled_step.h"
+
 namespace estimator::greybox {
 
 struct InnovationGains {
@@ -24,6 +26,8 @@ struct InnovationGains {
   /// samples x 2 columns per spectral line: orthonormal signatures that are projected out of r.
   Eigen::MatrixXd lines;
   Eigen::VectorXd line_m;  ///< yl, samples; empty: none
+  /// Place of a force F, as plant_sim::Ensemble::place_disturbance().
+  double force_place = plant_sim::kPlaceOfSensor;
 
   /// Samples [from, to).
   [[nodiscard]] InnovationGains part(Eigen::Index from, Eigen::Index to) const;

@@ -104,6 +104,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
   const auto line_m = [&](std::size_t lane, Eigen::Index k) {
     return gains[lane]->line_m.size() > 0 ? gains[lane]->line_m[k] : 0.0;
   };
+  ensemble_->place_disturbance(gains.front()->force_place);
   Ensemble::Values disturbance{};
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
@@ -163,6 +164,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     }
   }
   ensemble_->disturb({});
+  ensemble_->place_disturbance(plant_sim::kPlaceOfSensor);
   schedule_.end(*ensemble_);
 }
 

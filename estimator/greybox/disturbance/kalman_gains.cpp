@@ -83,6 +83,7 @@ std::vector<KalmanGains> kalman_gains(const Linearisation& model, const Dataset&
       InnovationGains& gains = all[first + lane].gains;
       gains.states = model.states;
       gains.decay = each.decay[lane];
+      gains.force_place = model.force_place;
       gains.gain.resize(count + 1, samples);
       gains.scale.resize(samples);
       results[lane] = {gains.gain.data(), gains.scale.data()};

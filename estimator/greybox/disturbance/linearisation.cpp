@@ -85,7 +85,8 @@ std::vector<double> gaps_m(const plant_sim::ModelFile& model, const Dataset& rec
 class Quotients {
  public:
   Quotients(const plant_sim::ModelFile& model, const Dataset& record,
-            const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta)
+            const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
+            double force_place)
       : record_(record) {
     ensembles_.push_back(model_ensemble(model, record.sample_time_s, parameters, theta));
     const bool coupled = has_second_mass(own(), kOwn);
@@ -115,6 +116,7 @@ class Quotients {
           ensemble->set(index, lane, neutral);
         }
       }
+      ensemble->place_disturbance(force_place);
       corrections_.emplace_back(*ensemble, record, kObserver_per_s);
     }
     if (force_) {
@@ -229,10 +231,11 @@ PlantStart start_of(const std::vector<std::string>& states) {
 }
 
 Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
-                        const std::vector<FreeParameter>& parameters,
-                        const Eigen::VectorXd& theta) {
+                        const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
+                        double force_place) {
   Linearisation result;
-  Quotients quotients(model, record, parameters, theta);
+  result.force_place = force_place;
+  Quotients quotients(model, record, parameters, theta, force_place);
   result.states = quotients.states();
   result.force = quotients.has_force();
   result.supply = quotients.has_supply();

@@ -15,6 +15,7 @@
 
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/free_parameter.h"
+#include "plant_sim/coupled_step.h"
 #include "plant_sim/model_file.h"
 
 namespace estimator::greybox::disturbance {
@@ -29,6 +30,8 @@ struct Linearisation {
   std::vector<std::string> states;  ///< without F
   bool force = false;               ///< F is a force, N; otherwise a speed, m/s
   bool supply = false;              ///< the plant has a supply pressure
+  /// As plant_sim::Ensemble::place_disturbance().
+  double force_place = plant_sim::kPlaceOfSensor;
   std::vector<StateMatrix> transition;
   std::vector<StateVector> from_supply;  ///< per Pa; zero without a supply pressure
   std::vector<double> speed_mps;
@@ -43,7 +46,8 @@ struct Linearisation {
 /// About the simulation with `theta` (weak observer). Throws as ObserverSimulation does.
 [[nodiscard]] Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
                                       const std::vector<FreeParameter>& parameters,
-                                      const Eigen::VectorXd& theta);
+                                      const Eigen::VectorXd& theta,
+                                      double force_place = plant_sim::kPlaceOfSensor);
 
 inline constexpr const char* kPlayWidth = "backlash.width_m";
 /// True for a model with a play between rod and sensor.

@@ -96,7 +96,7 @@ VectorXd known_lines_m(const plant_sim::ModelFile& model, const Dataset& record,
                                   noise.lines.begin() + static_cast<Index>(noise.waves.size()));
   std::vector<Eigen::Vector2d> waves;
   for (const std::vector<Eigen::Vector2d>& of_line : noise.waves) waves.push_back(of_line[r]);
-  return simulated_lines_m(model, record, parameters, theta, known, waves);
+  return simulated_lines_m(model, record, parameters, theta, known, waves, noise.force_place);
 }
 
 /// Columns of very different sizes (m per Pa, per N) scaled alike before their rank is judged.
@@ -193,11 +193,12 @@ class Likelihood {
 double most_corner_Hz(const FitDataset& data) { return kMostCorner_ratio / data.sample_time_s; }
 
 Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
-                         const std::vector<FreeParameter>& parameters, const VectorXd& theta) {
+                         const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                         double force_place) {
   Linearisations models;
   models.reserve(data.records.size());
   for (const Dataset& record : data.records) {
-    models.push_back(linearise(model, record, parameters, theta));
+    models.push_back(linearise(model, record, parameters, theta, force_place));
   }
   return models;
 }
@@ -345,7 +346,7 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   const Minimum best = minimise([&](const std::vector<Point>& at) { return likelihood(at); },
                                 {points[static_cast<std::size_t>(least - costs.begin())], *least},
                                 bounds, enough, threads > 1 ? Lookahead::yes : Lookahead::no);
-  return {{noise_of(best.at), start.lines, start.waves}, best.value};
+  return {{noise_of(best.at), start.lines, start.waves, start.force_place}, best.value};
 }
 
 }  // namespace estimator::greybox::disturbance

@@ -26,6 +26,8 @@ struct NoiseModel {
   std::vector<SpectralLine> lines;
   /// Amplitudes of sine and cosine found so far, per line and record; none yet for further lines.
   std::vector<std::vector<Eigen::Vector2d>> waves;
+  /// Place of a random force, as plant_sim::Ensemble::place_disturbance().
+  double force_place = plant_sim::kPlaceOfSensor;
 };
 
 /// One per record of a data set.
@@ -33,7 +35,8 @@ using Linearisations = std::vector<Linearisation>;
 
 [[nodiscard]] Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
                                        const std::vector<FreeParameter>& parameters,
-                                       const Eigen::VectorXd& theta);
+                                       const Eigen::VectorXd& theta,
+                                       double force_place = plant_sim::kPlaceOfSensor);
 
 /// The data set with innovations as residuals; every valid sample is fitted and scored.
 struct InnovationData {

@@ -52,9 +52,11 @@ Eigen::VectorXd moved_by_lines_m(const plant_sim::ModelFile& model, const Datase
                                  const std::vector<FreeParameter>& parameters,
                                  const Eigen::VectorXd& theta,
                                  const std::vector<SpectralLine>& lines,
-                                 const std::vector<Eigen::Vector2d>& waves, Correction correction) {
+                                 const std::vector<Eigen::Vector2d>& waves, double force_place,
+                                 Correction correction) {
   const std::unique_ptr<Ensemble> ensemble =
       model_ensemble(model, record.sample_time_s, parameters, theta);
+  ensemble->place_disturbance(force_place);
   const bool forces = ensemble->find("load_force.force_N").has_value();
   const auto supply = ensemble->find("supply_pressure_Pa");
   const double supply_Pa = supply ? ensemble->get(*supply, kPlain) : 0.0;
@@ -100,16 +102,19 @@ Eigen::VectorXd simulated_lines_m(const plant_sim::ModelFile& model, const Datas
                                   const std::vector<FreeParameter>& parameters,
                                   const Eigen::VectorXd& theta,
                                   const std::vector<SpectralLine>& lines,
-                                  const std::vector<Eigen::Vector2d>& waves) {
-  return moved_by_lines_m(model, record, parameters, theta, lines, waves, Correction::common);
+                                  const std::vector<Eigen::Vector2d>& waves, double force_place) {
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves, force_place,
+                          Correction::common);
 }
 
 Eigen::VectorXd simulated_line_error_m(const plant_sim::ModelFile& model, const Dataset& record,
                                        const std::vector<FreeParameter>& parameters,
                                        const Eigen::VectorXd& theta,
                                        const std::vector<SpectralLine>& lines,
-                                       const std::vector<Eigen::Vector2d>& waves) {
-  return moved_by_lines_m(model, record, parameters, theta, lines, waves, Correction::own);
+                                       const std::vector<Eigen::Vector2d>& waves,
+                                       double force_place) {
+  return moved_by_lines_m(model, record, parameters, theta, lines, waves, force_place,
+                          Correction::own);
 }
 
 }  // namespace estimator::greybox::disturbance

@@ -42,9 +42,9 @@ RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   }
   if (waves.empty()) return result;
   const FitSummary& fitted = stage.model.fitted;
-  const Eigen::VectorXd error_m =
-      disturbance::simulated_line_error_m(stage.context.problem.model, record, fitted.parameters,
-                                          fitted.theta, stage.noise.lines, waves);
+  const Eigen::VectorXd error_m = disturbance::simulated_line_error_m(
+      stage.context.problem.model, record, fitted.parameters, fitted.theta, stage.noise.lines,
+      waves, stage.noise.force_place);
   double samples = 0.0;
   for (Index k = 0; k < error_m.size(); ++k) {
     if (record.valid[static_cast<std::size_t>(k)] == 0) continue;

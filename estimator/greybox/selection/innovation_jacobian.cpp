@@ -23,8 +23,9 @@ constexpr Index kAtOnce = ObserverSimulation::kLanes / 2;
 InnovationGains gains_at(const InnovationStage& stage, std::size_t r, const VectorXd& theta) {
   const FitDataset& data = stage.context.problem.data;
   const Dataset& record = data.records[r];
-  const disturbance::Linearisation model = disturbance::linearise(
-      stage.context.problem.model, record, stage.model.fitted.parameters, theta);
+  const disturbance::Linearisation model =
+      disturbance::linearise(stage.context.problem.model, record, stage.model.fitted.parameters,
+                             theta, stage.noise.force_place);
   InnovationGains gains =
       disturbance::kalman_gains(model, record, stage.noise.noise, data.noise_floor_m).gains;
   gains.scale = record.innovations->scale;

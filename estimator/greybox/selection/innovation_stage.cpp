@@ -170,6 +170,7 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
     const LikeliestStart likeliest =
         likeliest_start(plain, {{fitted.parameters, fitted.theta}, {fitted.parameters, *other}},
                         start, width.threads);
+    stage.noise.force_place = likeliest.force_place;
     if (likeliest.start.start != fitted.theta)
       *other = std::exchange(fitted.theta, likeliest.start.start);
   }
@@ -184,14 +185,14 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
               .noise;
     };
     stage.linear = disturbance::linearise(plain.problem.model, stage.context.problem.data,
-                                          fitted.parameters, fitted.theta);
+                                          fitted.parameters, fitted.theta, stage.noise.force_place);
     if (i == 0 && disturbance::has_play(plain.problem.model, fitted.parameters, fitted.theta)) {
       estimate_noise();
       const disturbance::InnovationData followed =
           disturbance::innovation_data(plain.problem.model, plain.problem.data, fitted.parameters,
                                        fitted.theta, stage.linear, stage.noise);
       stage.linear = disturbance::linearise(plain.problem.model, followed.data, fitted.parameters,
-                                            fitted.theta);
+                                            fitted.theta, stage.noise.force_place);
     }
     estimate_noise();
     refit(plain, stage, other, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);

@@ -64,7 +64,7 @@ NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& sta
   const FitDataset& data = plain.problem.data;
   const FitSummary& at = start.fitted;
   const disturbance::Linearisations linear =
-      disturbance::linearise(model, data, at.parameters, at.theta);
+      disturbance::linearise(model, data, at.parameters, at.theta, noise.force_place);
   const auto cost = [&](const NoiseModel& tried) {
     return disturbance::minus_two_log_likelihood(model, data, at.parameters, at.theta, linear,
                                                  tried);
@@ -81,6 +81,11 @@ NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& sta
     }
   }
   return noise;
+}
+
+/// True where the sensor is nearer to the second mass than to the driven part.
+bool is_behind_spring(const FitSummary& fitted) {
+  return fitted.value("second_mass.sensor_ratio") > 0.5;
 }
 
 double squares_and_priors(const InnovationStage& stage) {
@@ -289,13 +294,25 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   const bool is_line = trial.candidate.effect.empty();
   if (is_line) noise.lines.push_back(trial.candidate.line);
   InnovationStage best;
-  const auto try_start = [&](const ModelStage& start) {
+  // an optimum beyond the effect's range, which no search takes, hides none within it
+  const std::size_t before = stage.model.fitted.parameters.size();
+  const auto is_better = [&](const InnovationStage& one) {
+    const bool has_best = std::isfinite(best.minus_two_log);
+    if (has_best && std::isfinite(one.minus_two_log) && !trial.elsewhere.empty()) {
+      const bool out = leaves_its_range(one.model.fitted, before);
+      if (out != leaves_its_range(best.model.fitted, before)) return !out;
+    }
+    return one.minus_two_log < best.minus_two_log;
+  };
+  const auto try_start = [&](const ModelStage& start, double force_place) {
+    noise.force_place = force_place;
     const NoiseModel own = is_line ? noise : with_likelier_sites(plain, start, noise);
     InnovationStage one = settled(plain, start, own, 1, SimulationWidth{});
-    if (one.minus_two_log < best.minus_two_log) best = std::move(one);
+    if (is_better(one)) best = std::move(one);
   };
   for (const ModelStage& start : trial.starts) {
-    if (trial.simulated || trial.candidate.gain_nats > 0.0) try_start(start);
+    if (trial.simulated || trial.candidate.gain_nats > 0.0)
+      try_start(start, stage.noise.force_place);
   }
   for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
     LikeliestStart likeliest = likeliest_start(plain, side, noise, SimulationWidth{}.threads);
@@ -303,8 +320,16 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
     ModelStage start = trial.starts.front();
     start.fitted.parameters = std::move(likeliest.start.parameters);
     start.fitted.theta = std::move(likeliest.start.start);
-    try_start(start);
+    try_start(start, likeliest.force_place);
   }
+  if (trial.elsewhere.empty() || !std::isfinite(best.minus_two_log)) return best;
+  // where the force acts shows once the resonance is found
+  NoiseModel other = best.noise;
+  const double place = other.force_place;
+  const bool on_second = place < 0.0 ? is_behind_spring(best.model.fitted) : place > 0.5;
+  other.force_place = on_second ? 0.0 : 1.0;
+  InnovationStage moved = settled(plain, best.model, other, 1, SimulationWidth{});
+  if (is_better(moved)) best = std::move(moved);
   return best;
 }
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "estimator/greybox/disturbance/model_ensemble.h"
+#include "estimator/greybox/sensor_place.h"
+
 namespace estimator::greybox::selection {
 
 namespace {
@@ -14,29 +17,44 @@ constexpr double kTriedDamping_ratio = 0.02;
 /// Fall of -2 log L below which a step of a noise model's search is the last.
 constexpr double kLastStep = 1.0;
 
+/// True where the model at these values has a second mass.
+bool swings(const plant_sim::ModelFile& model, const FitSummary& at) {
+  return has_second_mass(*disturbance::model_ensemble(model, model.step_s, at.parameters, at.theta),
+                         0);
+}
+
 }  // namespace
 
 LikeliestStart likeliest_start(const SearchContext& plain, std::vector<ParameterSubset> starts,
                                const disturbance::NoiseModel& noise, unsigned threads) {
-  if (starts.size() == 1) return {std::move(starts.front())};
   const DiagnosisProblem& problem = plain.problem;
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < starts.size() && !plain.cancelled(); ++i) {
+  LikeliestStart best;
+  best.force_place = noise.force_place;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
     FitSummary at;
     at.parameters = starts[i].parameters;
     at.theta = starts[i].start;
-    const disturbance::Linearisations linear =
-        disturbance::linearise(problem.model, problem.data, at.parameters, at.theta);
-    const double cost =
-        prior_cost(at) + disturbance::estimate_noise(problem.model, problem.data, at.parameters,
-                                                     at.theta, linear, noise, threads, kLastStep)
-                             .minus_two_log_likelihood;
-    if (!(cost < least)) continue;
-    least = cost;
-    best = i;
+    std::vector<double> places = {noise.force_place};
+    if (swings(problem.model, at)) places = {0.0, 1.0};
+    for (const double place : places) {
+      if (plain.cancelled()) break;
+      disturbance::NoiseModel placed = noise;
+      placed.force_place = place;
+      const disturbance::Linearisations linear =
+          disturbance::linearise(problem.model, problem.data, at.parameters, at.theta, place);
+      const double cost =
+          prior_cost(at) + disturbance::estimate_noise(problem.model, problem.data, at.parameters,
+                                                       at.theta, linear, placed, threads, kLastStep)
+                               .minus_two_log_likelihood;
+      if (!(cost < best.minus_two_log)) continue;
+      best.minus_two_log = cost;
+      best.force_place = place;
+      chosen = i;
+    }
   }
-  return {std::move(starts[best]), least};
+  best.start = std::move(starts[chosen]);
+  return best;
 }
 
 std::vector<ParameterSubset> resonance_starts(const ParameterSubset& start) {

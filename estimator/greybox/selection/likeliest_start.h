@@ -13,12 +13,13 @@ namespace estimator::greybox::selection {
 
 struct LikeliestStart {
   ParameterSubset start;
-  /// With its noise model, priors included; NaN for an only start, which is not evaluated.
-  double minus_two_log = std::numeric_limits<double>::quiet_NaN();
+  double minus_two_log = std::numeric_limits<double>::infinity();  ///< priors included
+  double force_place = plant_sim::kPlaceOfSensor;                  ///< NoiseModel's
 };
 
 /// The likeliest of `starts` (not empty), each linearised and with a noise model searched from
-/// `noise`; the first where nothing is likelier.
+/// `noise`, and where a second mass swings with the random force on either mass; the first where
+/// nothing is likelier.
 [[nodiscard]] LikeliestStart likeliest_start(const SearchContext& plain,
                                              std::vector<ParameterSubset> starts,
                                              const disturbance::NoiseModel& noise,

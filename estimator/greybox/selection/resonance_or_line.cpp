@@ -58,6 +58,7 @@ std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& p
   const double found_Hz = resonance_Hz(stage);
   disturbance::NoiseModel noise;
   noise.noise = stage.noise.noise;
+  noise.force_place = stage.noise.force_place;
   for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
     if (is_on(stage.noise.lines[i], found_Hz)) continue;
     noise.lines.push_back(stage.noise.lines[i]);

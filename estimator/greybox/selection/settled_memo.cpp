@@ -111,7 +111,7 @@ void add(KeyBytes& key, const std::vector<FreeParameter>& parameters) {
 
 void add(KeyBytes& key, const disturbance::NoiseModel& noise) {
   for (const double value : {noise.noise.disturbance_sd, noise.noise.corner_Hz, noise.noise.walk_m,
-                             noise.noise.sensor_m}) {
+                             noise.noise.sensor_m, noise.force_place}) {
     key.add(value);
   }
   key.add(noise.lines.size());
