@@ -37,10 +37,12 @@ struct DisturbedParts {
 /// `place`: 0 on the driven part, 1 on the second mass, or kPlaceOfSensor.
 template <class Effects, class S>
 DisturbedParts<S> disturbed_parts(const Effects& effects, const S& mass_kg, const S& place) {
-  const S least_ratio = 0.02;  // a mass of nothing would be moved without limit
+  const S least_ratio = 0.02;  // a mass of nothing would be moved without limit: it passes F on
   const S given = select(place < S(0.0), effects.sensor_place(), place);
   const S second = select(effects.coupling_rate_per_s() > S(0.0), given, S(0.0));
-  return {S(1.0) - second, second / (max(effects.coupled_ratio(), least_ratio) * mass_kg)};
+  const S ratio = effects.coupled_ratio();
+  return {S(1.0) - second * min(S(1.0), ratio / least_ratio),
+          second / (max(ratio, least_ratio) * mass_kg)};
 }
 
 /// The plant's state after the step; the second mass's is kept by the effects. rate(x, a): the

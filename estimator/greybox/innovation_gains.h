@@ -5,7 +5,7 @@
 //   x(k) += K(k) e(k),             F(k+1) = decay (F(k) + K_F e)
 //
 // yl  what spectral lines known so far move the reading by: the gains were computed without them
-// x  states of the plant (of a second mass too: a change of its offset z leaves the reading), F
+// x  states of the plant (of a second mass too: correcting its offset z leaves the reading), F
 // process disturbance (a force, or a speed where the plant has no force). The gains are frozen:
 // every candidate model is simulated with those of the model that it extends.
 #pragma once

@@ -12,7 +12,7 @@ namespace estimator::greybox {
 inline constexpr const char* kSecondMassOffset = "second_mass.offset_m";
 inline constexpr const char* kSecondMassOffsetSpeed = "second_mass.offset_mps";
 
-/// True where a second mass swings in the lane; one without a share of the mass swings too.
+/// True where a second mass swings in the lane; also with mass_ratio 0.
 [[nodiscard]] inline bool has_second_mass(const plant_sim::Ensemble& ensemble, std::size_t lane) {
   const auto resonance = ensemble.find("second_mass.resonance_Hz");
   return resonance && ensemble.get(*resonance, lane) > 0.0;

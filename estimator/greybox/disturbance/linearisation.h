@@ -3,10 +3,10 @@
 //
 //   x(k+1) = A(k) x(k) + b_p(k) dPs(k),   x = (y, v, Pi, Po, z, z', F)  or what the plant has of it
 //
-// by difference quotients of the plant's own step, all in the lanes of ensembles. y is the position
-// that the sensor is at; z, z' are the offset and its speed of a second mass. Spool states are left
-// out: the command determines them. Dry friction and play are switched off for the quotients: a
-// slope across stick and slip says nothing.
+// by difference quotients of the plant's own step, all in the lanes of ensembles. y: position at
+// the sensor, that of the rod without a second mass; z, z': offset of the second mass and its rate.
+// Spool states are left out: the command determines them. Dry friction and play are switched off
+// for the quotients: a slope across stick and slip says nothing.
 #pragma once
 
 #include <Eigen/Core>

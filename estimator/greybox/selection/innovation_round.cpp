@@ -24,8 +24,8 @@ constexpr std::size_t kMostLineFinalists = 2;
 /// Lead of the likeliest candidate that another may make up for when its noise model and parameters
 /// have converged together.
 constexpr double kContends_nats = 30.0;
-/// The same for an effect behind a spectral line, as a share of its lead: a line is exact at once,
-/// and stands for a resonance whose parameters and noise model have yet to find each other.
+/// The same for an effect behind a spectral line, as a share of the line's gain: a line is exact at
+/// once, and stands for a resonance whose parameters and noise model have yet to find each other.
 constexpr double kContendsWithLine = 0.7;
 
 /// Drops effects that have left their range since others came in: these, or a law that the library

@@ -159,6 +159,7 @@ namespace {
 InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
                              const disturbance::NoiseModel& start, int turns,
                              SimulationWidth width) {
+  if (plain.cancelled()) return {};
   InnovationStage stage;
   stage.model = std::move(model);
   stage.noise = start;

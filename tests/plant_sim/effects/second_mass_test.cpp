@@ -81,6 +81,17 @@ TEST(SecondMass, IsPushedFromOutsideWhereTheSensorIs) {
   }
 }
 
+TEST(SecondMass, PassesAForceFromOutsideOnHoweverLittleItWeighs) {
+  for (const double ratio : {0.4, 0.005, 0.0}) {
+    auto plant = at_rest<Axis>();
+    plant->parameters.damping_N_s_per_m = 0.0;
+    hang(*plant, {ratio, 34.0, 0.3, 1.0});
+    plant->disturbance_N = -35.0;
+    hold(*plant, 0.0, 1.0);
+    EXPECT_NEAR(plant->state.v_mps, 0.35, 1e-3) << ratio;  // F t / M
+  }
+}
+
 TEST(SecondMass, AddsNothingToTheMassOfSlowMotion) {
   auto rigid = at_rest<Axis>();
   auto flexible = at_rest<Axis>();
