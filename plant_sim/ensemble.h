@@ -47,8 +47,8 @@ class Ensemble {
   virtual void shift(const Values& by_m) noexcept = 0;
 
   /// The integration state of that name ("v_mps", "second_mass.offset_m") for state() and
-  /// set_state(); none when neither the plant nor an effect that fits it has such a state. States
-  /// of an effect whose parameters are neutral stand still.
+  /// set_state(); none when neither the plant nor an effect that fits it has such a state. An
+  /// effect's states stand still while its parameters are neutral.
   [[nodiscard]] virtual std::optional<std::size_t> find_state(std::string_view name) const = 0;
   [[nodiscard]] virtual Values state(std::size_t index) const noexcept = 0;
   virtual void set_state(std::size_t index, const Values& values) noexcept = 0;

@@ -99,6 +99,10 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
   const auto disturbed = static_cast<Eigen::Index>(states.size());
   const auto offset = ensemble_->find_state(kSecondMassOffset);
   const Ensemble::Values place = sensor_place(*ensemble_);
+  const auto sensed_m = [&] {
+    const double rod_m = ensemble_->state(position_)[0];
+    return place[0] > 0.0 ? rod_m + place[0] * ensemble_->state(*offset)[0] : rod_m;
+  };
   // otherwise the disturbance is a speed
   const bool forces = ensemble_->find("load_force.force_N").has_value();
   const auto line_m = [&](std::size_t lane, Eigen::Index k) {
@@ -117,7 +121,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     }
     const Ensemble::Values reading_m = ensemble_->reading_m();
     speed_mps_[row] = ensemble_->speed_mps()[0];
-    predicted_.rod_m[row] = ensemble_->state(position_)[0];
+    predicted_.rod_m[row] = sensed_m();
     predicted_.reading_m[row] = reading_m[0];
     Ensemble::Values error_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
@@ -141,7 +145,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
       }
       ensemble_->shift(back_m);
     }
-    predicted_.correction_m[row] = ensemble_->state(position_)[0] - predicted_.rod_m[row];
+    predicted_.correction_m[row] = sensed_m() - predicted_.rod_m[row];
     Ensemble::Values force_N{};
     Ensemble::Values moved_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {

@@ -65,7 +65,7 @@ class ObserverSimulation {
   /// Modelled speed of lane 0 in the latest run, one per sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
   /// Lane 0 in the latest run: rod and reading as predicted, and by how much the prediction was
-  /// then corrected.
+  /// then corrected. In innovations the rod is where the sensor is: on a second mass too.
   struct Predicted {
     std::vector<double> rod_m;
     std::vector<double> reading_m;

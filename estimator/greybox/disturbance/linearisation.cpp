@@ -35,7 +35,7 @@ constexpr double kSupply_Pa = 1e3;
 /// Lane 0 is the model itself; the quotients start from lane 1, which has no friction and no play.
 constexpr std::size_t kOwn = 0;
 constexpr std::size_t kSmooth = 1;
-constexpr std::size_t kQuotients = Ensemble::kLanes - kSmooth - 1;  ///< of one ensemble
+constexpr std::size_t kQuotients = Ensemble::kLanes - kSmooth - 1;  ///< lanes of one ensemble
 
 /// All parameters of the effects that make the step of a model jump, with their neutral values.
 /// None may stay: without its Coulomb level, the rise towards standstill would be a negative
@@ -214,7 +214,7 @@ class Quotients {
   std::vector<std::size_t> states_;
   std::vector<double> sizes_;
   std::vector<std::size_t> shared_;    ///< all that a lane must share with the model before a step
-  std::optional<std::size_t> offset_;  ///< of a second mass
+  std::optional<std::size_t> offset_;  ///< second mass's
   double place_ = 0.0;                 ///< sensor_place()
   bool force_ = false;
   std::optional<std::size_t> supply_;  ///< parameter

@@ -84,6 +84,9 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   if (!memo.simulated.empty() || leaves_physics(final))
     add_simulated_starts(without, memo.simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);
+  // what a predictor without a resonance gains says nothing about one
+  std::stable_partition(rivals.begin(), rivals.end(),
+                        [](const InnovationTrial& rival) { return !rival.elsewhere.empty(); });
   double best = -std::numeric_limits<double>::infinity();
   for (const InnovationTrial& rival : rivals) {
     if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
@@ -94,7 +97,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   std::erase_if(rivals, [&](const InnovationTrial& rival) {
     const bool far =
         rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
-    return (far && !rival.simulated) ||
+    return (far && !rival.simulated && rival.elsewhere.empty()) ||
            std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
   });
   rivals.resize(std::min(rivals.size(), kRivalFinalists));

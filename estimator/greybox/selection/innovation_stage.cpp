@@ -168,9 +168,10 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
   std::optional<Eigen::VectorXd> other = with_file_values(plain, stage.model);
   if (!(start.noise.sensor_m > 0.0)) {
     FitSummary& fitted = stage.model.fitted;
+    std::vector<ParameterSubset> starts = {{fitted.parameters, fitted.theta}};
+    if (*other != fitted.theta) starts.push_back({fitted.parameters, *other});
     const LikeliestStart likeliest =
-        likeliest_start(plain, {{fitted.parameters, fitted.theta}, {fitted.parameters, *other}},
-                        start, width.threads);
+        likeliest_start(plain, std::move(starts), start, width.threads);
     stage.noise.force_place = likeliest.force_place;
     if (likeliest.start.start != fitted.theta)
       *other = std::exchange(fitted.theta, likeliest.start.start);

@@ -27,6 +27,7 @@ constexpr double kWorthSimulating = 0.97;
 constexpr int kTrialStartIterations = 10;
 constexpr double kTrialStartTolerance = 2e-3;
 constexpr double kSimulationTolerance = 1e-5;
+constexpr const char* kSensorRatio = "second_mass.sensor_ratio";
 
 ModelStage with_effect(const ModelStage& stage, const std::string& effect, FitSummary fitted) {
   ModelStage next{stage.added, std::move(fitted)};
@@ -84,8 +85,15 @@ NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& sta
 }
 
 /// True where the sensor is nearer to the second mass than to the driven part.
-bool is_behind_spring(const FitSummary& fitted) {
-  return fitted.value("second_mass.sensor_ratio") > 0.5;
+bool is_behind_spring(const FitSummary& fitted) { return fitted.value(kSensorRatio) > 0.5; }
+
+/// The stage's noise model with its random force on the other of two masses.
+NoiseModel with_force_on_other_mass(const InnovationStage& stage) {
+  NoiseModel noise = stage.noise;
+  const double place = noise.force_place;
+  const bool on_second = place < 0.0 ? is_behind_spring(stage.model.fitted) : place > 0.5;
+  noise.force_place = on_second ? 0.0 : 1.0;
+  return noise;
 }
 
 double squares_and_priors(const InnovationStage& stage) {
@@ -132,6 +140,11 @@ double promised_nats(const InnovationStage& stage) {
 
 namespace {
 
+bool has_sensor_place(const ParameterSubset& start) {
+  return std::any_of(start.parameters.begin(), start.parameters.end(),
+                     [](const auto& p) { return p.name == kSensorRatio; });
+}
+
 /// A resonance as it was screened on either side of the spring, the plant as the stage and as the
 /// file have it.
 std::vector<std::vector<ParameterSubset>> starts_elsewhere(const InnovationStage& stage,
@@ -139,14 +152,14 @@ std::vector<std::vector<ParameterSubset>> starts_elsewhere(const InnovationStage
   std::vector<std::vector<ParameterSubset>> sides;
   for (const ParameterSubset& start : screened.starts) {
     const bool known = std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
-      return side.front().parameters.size() == start.parameters.size();
+      return has_sensor_place(side.front()) == has_sensor_place(start);
     });
     ModelStage at = stage.model;
     at.fitted.theta = start.start;
-    std::vector<ParameterSubset> side = resonance_starts(start);
+    std::vector<ParameterSubset> side = mass_share_starts(start);
     if (known || side.empty()) continue;
     const std::vector<ParameterSubset> more =
-        resonance_starts({start.parameters, with_file_values(stage.context, at)});
+        mass_share_starts({start.parameters, with_file_values(stage.context, at)});
     side.insert(side.end(), more.begin(), more.end());
     sides.push_back(std::move(side));
   }
@@ -317,18 +330,14 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
     LikeliestStart likeliest = likeliest_start(plain, side, noise, SimulationWidth{}.threads);
     if (!(likeliest.minus_two_log < stage.minus_two_log)) continue;
-    ModelStage start = trial.starts.front();
+    ModelStage start{trial.starts.front().added, {}};
     start.fitted.parameters = std::move(likeliest.start.parameters);
     start.fitted.theta = std::move(likeliest.start.start);
     try_start(start, likeliest.force_place);
   }
   if (trial.elsewhere.empty() || !std::isfinite(best.minus_two_log)) return best;
   // where the force acts shows once the resonance is found
-  NoiseModel other = best.noise;
-  const double place = other.force_place;
-  const bool on_second = place < 0.0 ? is_behind_spring(best.model.fitted) : place > 0.5;
-  other.force_place = on_second ? 0.0 : 1.0;
-  InnovationStage moved = settled(plain, best.model, other, 1, SimulationWidth{});
+  InnovationStage moved = settled(plain, best.model, with_force_on_other_mass(best), 1, {});
   if (is_better(moved)) best = std::move(moved);
   return best;
 }

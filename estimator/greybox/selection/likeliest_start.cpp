@@ -18,7 +18,7 @@ constexpr double kTriedDamping_ratio = 0.02;
 constexpr double kLastStep = 1.0;
 
 /// True where the model at these values has a second mass.
-bool swings(const plant_sim::ModelFile& model, const FitSummary& at) {
+bool has_swing(const plant_sim::ModelFile& model, const FitSummary& at) {
   return has_second_mass(*disturbance::model_ensemble(model, model.step_s, at.parameters, at.theta),
                          0);
 }
@@ -36,7 +36,9 @@ LikeliestStart likeliest_start(const SearchContext& plain, std::vector<Parameter
     at.parameters = starts[i].parameters;
     at.theta = starts[i].start;
     std::vector<double> places = {noise.force_place};
-    if (swings(problem.model, at)) places = {0.0, 1.0};
+    const bool swings = has_swing(problem.model, at);
+    if (swings) places = {0.0, 1.0};
+    if (!swings && starts.size() == 1) break;
     for (const double place : places) {
       if (plain.cancelled()) break;
       disturbance::NoiseModel placed = noise;
@@ -57,7 +59,7 @@ LikeliestStart likeliest_start(const SearchContext& plain, std::vector<Parameter
   return best;
 }
 
-std::vector<ParameterSubset> resonance_starts(const ParameterSubset& start) {
+std::vector<ParameterSubset> mass_share_starts(const ParameterSubset& start) {
   const bool resonates =
       std::any_of(start.parameters.begin(), start.parameters.end(),
                   [](const FreeParameter& p) { return p.name == "second_mass.resonance_Hz"; });

@@ -13,8 +13,9 @@ namespace estimator::greybox::selection {
 
 struct LikeliestStart {
   ParameterSubset start;
-  double minus_two_log = std::numeric_limits<double>::infinity();  ///< priors included
-  double force_place = plant_sim::kPlaceOfSensor;                  ///< NoiseModel's
+  /// Priors included; infinite for an only start without a second mass, which is not evaluated.
+  double minus_two_log = std::numeric_limits<double>::infinity();
+  double force_place = plant_sim::kPlaceOfSensor;  ///< NoiseModel's
 };
 
 /// The likeliest of `starts` (not empty), each linearised and with a noise model searched from
@@ -27,6 +28,6 @@ struct LikeliestStart {
 
 /// Models with the resonance of `start`: shares of the mass and a damping that structures have, the
 /// sensor, where it is free, on the second mass; none for a model without one.
-[[nodiscard]] std::vector<ParameterSubset> resonance_starts(const ParameterSubset& start);
+[[nodiscard]] std::vector<ParameterSubset> mass_share_starts(const ParameterSubset& start);
 
 }  // namespace estimator::greybox::selection

@@ -43,7 +43,7 @@ std::string ringing_effect(const InnovationStage& stage) {
 }
 
 /// The stage's resonance, Hz; NaN: none.
-double resonance_Hz(const InnovationStage& stage) {
+double found_resonance_Hz(const InnovationStage& stage) {
   for (const std::string& effect : stage.model.added) {
     const double found_Hz = stage.model.fitted.value(effect + std::string(kFrequency));
     if (std::isfinite(found_Hz)) return found_Hz;
@@ -55,7 +55,7 @@ double resonance_Hz(const InnovationStage& stage) {
 
 std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& plain,
                                                           const InnovationStage& stage) {
-  const double found_Hz = resonance_Hz(stage);
+  const double found_Hz = found_resonance_Hz(stage);
   disturbance::NoiseModel noise;
   noise.noise = stage.noise.noise;
   noise.force_place = stage.noise.force_place;

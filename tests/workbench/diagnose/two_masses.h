@@ -97,7 +97,7 @@ inline config::record::Record record(const Rig& rig) {
   double speed_mps = 0.0;
   std::mt19937 outside(rig.seed + 1000);
   std::normal_distribution<double> normal(0.0, 1.0);
-  double disturbance = normal(outside);  // of standard deviation 1
+  double disturbance = normal(outside);  // its standard deviation is 1
   const double keep =
       std::exp(-2.0 * std::numbers::pi * rig.disturbance_corner_Hz / rig.sample_rate_Hz);
   const auto samples = std::lround(rig.duration_s * rig.sample_rate_Hz);

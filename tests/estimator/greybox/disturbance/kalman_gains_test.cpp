@@ -175,6 +175,34 @@ TEST(KalmanGains, SeveralNoiseModelsHaveEachTheGainsOfTheTextbooksRecursion) {
   }
 }
 
+// Four states and F; the reading is the first, wherever between the two masses the sensor is.
+TEST(KalmanGains, OfAnAxisWithASecondMassAreThoseOfTheTextbooksRecursionToo) {
+  plant_sim::ModelFile two = axis();
+  *two.value("second_mass.mass_ratio") = 0.4;
+  *two.value("second_mass.resonance_Hz") = 17.0;
+  *two.value("second_mass.damping_ratio") = 0.03;
+  *two.value("second_mass.sensor_ratio") = 0.5;
+  for (auto& effect : two.effects) effect.present = effect.name == "second_mass";
+  const Dataset record = axis_record(400);
+  const Linearisation model = linearise(two, record, {}, Eigen::VectorXd(), 1.0);
+  ASSERT_EQ(model.states.size(), 4U);
+  const NoiseParameters noise{
+      .disturbance_sd = 3.0, .corner_Hz = 2.0, .walk_m = 1e-8, .sensor_m = 1e-6};
+  StateMatrix start = StateMatrix::Zero();
+  start(0, 0) = 1e-12;
+  start(kDisturbance, kDisturbance) = 9.0;
+  const KalmanGains found = kalman_gains(model, record, noise, 1e-6);
+  const KalmanGains truth = by_joseph(model, record, noise, 1e-6, start);
+  EXPECT_GT(truth.gains.gain.row(2).norm(), 0.0);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    EXPECT_LT((found.gains.gain.row(i) - truth.gains.gain.row(i)).norm(),
+              1e-6 * truth.gains.gain.row(i).norm())
+        << i;
+  }
+  EXPECT_NEAR(found.log_determinant, truth.log_determinant, 1e-6);
+  EXPECT_EQ(found.gains.force_place, 1.0);
+}
+
 TEST(KalmanGains, OfNoNoiseModelAreNone) {
   const Dataset record = axis_record(10);
   EXPECT_TRUE(kalman_gains(random_walk(10), record, std::vector<NoiseParameters>(), 1e-6).empty());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -67,8 +68,10 @@ Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) {
 // rate.
 TEST(Linearisation, OfAnAxisWithASecondMassIsThatOfTwoBodies) {
   constexpr double kRatio = 0.4;
+  const Eigen::Vector4d unit(kTs_s, 1.0, kTs_s,
+                             1.0);  // a speed moves a position so far in a sample
   const double w = 2.0 * std::numbers::pi * 17.0;
-  for (const double place : {0.0, 1.0}) {
+  for (const double place : {0.0, 0.5, 1.0}) {
     plant_sim::ModelFile model = with_second_mass(axis(), kRatio, place);
     const double m1_kg = (1.0 - kRatio) * *model.value("mass_kg");
     const double m2_kg = kRatio * *model.value("mass_kg");
@@ -95,7 +98,8 @@ TEST(Linearisation, OfAnAxisWithASecondMassIsThatOfTwoBodies) {
       const StateMatrix& a = linear.transition[at];
       for (Eigen::Index i = 0; i < 4; ++i) {
         for (Eigen::Index j = 0; j < 4; ++j) {
-          EXPECT_NEAR(a(i, j), truth(i, j), 1e-3 * (1.0 + std::abs(truth(i, j))))
+          EXPECT_NEAR(a(i, j), truth(i, j),
+                      1e-3 * std::max(std::abs(truth(i, j)), unit[i] / unit[j]))
               << i << j << place;
         }
         EXPECT_NEAR(a(i, kMostStates - 1), truth(i, 4), 1e-3 * truth.col(4).cwiseAbs()[i] + 1e-10)
@@ -103,6 +107,36 @@ TEST(Linearisation, OfAnAxisWithASecondMassIsThatOfTwoBodies) {
       }
     }
   }
+}
+
+// A correction of the offset alone leaves the reading, and shows one sample later as A's column
+// says.
+TEST(Linearisation, AnOffsetIsCorrectedWithTheReadingHeld) {
+  constexpr double kGain = 0.2;
+  constexpr Eigen::Index kAt = 30;
+  const plant_sim::ModelFile model = with_second_mass(axis(), 0.4, 0.5);
+  Dataset record = axis_record(60);
+  record.y_m[kAt] += 1e-4;
+  const Linearisation linear = linearise(model, record, {}, Eigen::VectorXd());
+  const auto innovations = [&](double gain) {
+    InnovationGains gains;
+    gains.states = linear.states;
+    gains.gain = Eigen::MatrixXd::Zero(5, static_cast<Eigen::Index>(record.size()));
+    gains.gain(2, kAt) = gain;
+    gains.scale = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(record.size()));
+    record.innovations = std::make_shared<const InnovationGains>(gains);
+    ObserverSimulation run(model, record, {});
+    Eigen::MatrixXd residuals_m;
+    run.residuals(Eigen::VectorXd(), residuals_m);
+    return Eigen::VectorXd(residuals_m.col(0));
+  };
+  const Eigen::VectorXd without_m = innovations(0.0);
+  const Eigen::VectorXd with_m = innovations(kGain);
+  EXPECT_EQ(with_m[kAt], without_m[kAt]);
+  const double moved_m = kGain * without_m[kAt];  // the offset
+  const double expected_m = -linear.transition[kAt](0, 2) * moved_m;
+  ASSERT_GT(std::abs(expected_m), 1e-3 * std::abs(moved_m));
+  EXPECT_NEAR(with_m[kAt + 1] - without_m[kAt + 1], expected_m, 1e-3 * std::abs(expected_m));
 }
 
 // More states than an ensemble has lanes for. What hangs on a cylinder's rod moves it as little as
