@@ -236,6 +236,8 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     if (round == kMostExchanges || !exchange(context, search, stage)) break;
     extend_fully();
   }
+  // at the end, so that it favours no second mass over what is exchanged for it
+  reconsider_force_place(context, stage);
   search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);
   search.final = std::move(stage);

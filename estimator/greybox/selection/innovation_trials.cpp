@@ -84,24 +84,20 @@ NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& sta
   return noise;
 }
 
-/// True where the sensor is nearer to the second mass than to the driven part.
-bool is_behind_spring(const FitSummary& fitted) { return fitted.value(kSensorRatio) > 0.5; }
-
-/// The stage's noise model with its random force on the other of two masses.
-NoiseModel with_force_on_other_mass(const InnovationStage& stage) {
-  NoiseModel noise = stage.noise;
-  const double place = noise.force_place;
-  const bool on_second = place < 0.0 ? is_behind_spring(stage.model.fitted) : place > 0.5;
-  noise.force_place = on_second ? 0.0 : 1.0;
-  return noise;
-}
-
 double squares_and_priors(const InnovationStage& stage) {
   const double floor_m = stage.context.problem.data.noise_floor_m;
   return squares(stage.model.fitted, floor_m) + prior_cost(stage.model.fitted);
 }
 
 }  // namespace
+
+NoiseModel with_force_on_other_mass(const InnovationStage& stage) {
+  NoiseModel noise = stage.noise;
+  const bool behind_spring = stage.model.fitted.value(kSensorRatio) > 0.5;
+  const bool on_second = noise.force_place < 0.0 ? behind_spring : noise.force_place > 0.5;
+  noise.force_place = on_second ? 0.0 : 1.0;
+  return noise;
+}
 
 NoiseModel moved(NoiseModel noise, std::size_t line, disturbance::LineSite site) {
   noise.lines[line].site = site;

@@ -39,6 +39,9 @@ struct InnovationTrial {
 [[nodiscard]] disturbance::NoiseModel moved(disturbance::NoiseModel noise, std::size_t line,
                                             disturbance::LineSite site);
 
+/// The stage's noise model with its random force on the other of two masses.
+[[nodiscard]] disturbance::NoiseModel with_force_on_other_mass(const InnovationStage& stage);
+
 [[nodiscard]] double penalty_nats(const FitSummary& with, const FitSummary& without);
 /// -2 log L with a penalty for each parameter.
 [[nodiscard]] double penalised(const InnovationStage& stage);

@@ -73,6 +73,15 @@ std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& p
   return other;
 }
 
+void reconsider_force_place(const SearchContext& plain, InnovationStage& stage) {
+  const double resonance_Hz =
+      stage.model.fitted.value("second_mass.resonance_Hz");  // the file's too
+  if (!std::isfinite(resonance_Hz) || plain.cancelled()) return;
+  InnovationStage other = settled(plain, stage.model, with_force_on_other_mass(stage), kMostTurns,
+                                  wide(plain.options.threads));
+  if (penalised(other) < penalised(stage)) stage = std::move(other);
+}
+
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
   if (!p.name.ends_with(kFrequency)) return false;
   const double resonance_Hz = p.to_physical(theta);

@@ -18,6 +18,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] std::optional<InnovationStage> without_lines_of_resonance(
     const SearchContext& plain, const InnovationStage& stage);
 
+/// Moves the random force to the other of two masses, noise model and parameters converged, where
+/// that is likelier: parameters found with the one place favour it.
+void reconsider_force_place(const SearchContext& plain, InnovationStage& stage);
+
 struct LineInstead {
   InnovationStage without;        ///< the stage without the resonance
   InnovationStage stage;          ///< with the line

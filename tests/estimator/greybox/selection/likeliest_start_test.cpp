@@ -4,6 +4,7 @@
 
 #include "config/schema/document.h"
 #include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/resonance_or_line.h"
 #include "tests/workbench/diagnose/two_masses.h"
 
 namespace estimator::greybox::selection {
@@ -57,6 +58,26 @@ TEST(LikeliestStart, HasTheRecordsResonanceAndThePlaceOfItsForce) {
     EXPECT_EQ(best.force_place, on_second ? 1.0 : 0.0);
     EXPECT_LT(best.minus_two_log, found(context, {21.0}).minus_two_log);
   }
+}
+
+// Parameters found with the force on one mass, and moved to the other.
+TEST(ForcePlace, IsReconsideredOnceTheResonanceIsFound) {
+  two_masses::Rig rig = kRig;
+  rig.second_disturbance_N = 2.0;
+  const SearchContext context = context_of(rig);
+  disturbance::NoiseModel noise;
+  noise.noise = {.disturbance_sd = 2.0, .corner_Hz = 2.0, .walk_m = 1e-8, .sensor_m = 2e-6};
+  noise.force_place = 0.0;
+  InnovationStage stage = settled(context, first_stage(context), noise, 1, SimulationWidth{});
+  ASSERT_EQ(stage.noise.force_place, 0.0);
+  const double before = stage.minus_two_log;
+  reconsider_force_place(context, stage);
+  EXPECT_EQ(stage.noise.force_place, 1.0);
+  EXPECT_LT(stage.minus_two_log, before - 20.0);
+  const double found = stage.minus_two_log;
+  reconsider_force_place(context, stage);
+  EXPECT_EQ(stage.noise.force_place, 1.0);
+  EXPECT_EQ(stage.minus_two_log, found);
 }
 
 TEST(LikeliestStart, SharesOfTheMassAreTriedForASecondMassAlone) {
