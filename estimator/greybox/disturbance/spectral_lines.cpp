@@ -122,23 +122,37 @@ namespace {
 template <int Count, typename Inputs>
 MatrixXd response(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
                   LineSite site, Inputs inputs) {
+  using Row = Eigen::Matrix<double, 1, Count>;
+  const auto count = static_cast<Index>(model.states.size());  // without F
+  const Index corrected = gains.gain.rows() - 1;               // of them
   MatrixXd result(static_cast<Index>(record.size()), Count);
-  Eigen::Matrix<double, kMostStates, Count> z = Eigen::Matrix<double, kMostStates, Count>::Zero();
+  std::array<Row, kMostStates> z;  // states, then F at `count`
+  std::array<Row, kMostStates> next;
+  z.fill(Row::Zero());
   std::size_t segment = 0;
   for (std::size_t row = 0; row < record.size(); ++row) {
     if (segment < record.starts.size() && record.starts[segment] == row) {
-      z.setZero();
+      z.fill(Row::Zero());
       ++segment;
     }
-    const Eigen::Matrix<double, 1, Count> w = inputs(record.t_s[row]);
-    Eigen::Matrix<double, 1, Count> e = z.row(0);
+    const Row w = inputs(record.t_s[row]);
+    Row e = z[0];
     if (site == LineSite::sensor) e += w;
     const auto k = static_cast<Index>(row);
     const double counts = record.valid[row] != 0 ? 1.0 : 0.0;
     result.row(k) = counts * gains.scale[k] * e;
-    z -= gain_at(gains, k) * e;
-    z = (transition_at(model, gains, row) * z).eval();
-    if (site != LineSite::sensor) z += input_of(model, site, row) * w;
+    for (Index i = 0; i < corrected; ++i) z[static_cast<std::size_t>(i)] -= gains.gain(i, k) * e;
+    z[static_cast<std::size_t>(count)] -= gains.gain(corrected, k) * e;
+    const StateMatrix& a = model.transition[row];
+    const Row& force = z[static_cast<std::size_t>(count)];
+    for (Index i = 0; i < count; ++i) {
+      Row sum = a(i, kDisturbance) * (site == LineSite::force ? force + w : force);
+      if (site == LineSite::supply) sum += model.from_supply[row][i] * w;
+      for (Index j = 0; j < count; ++j) sum += a(i, j) * z[static_cast<std::size_t>(j)];
+      next[static_cast<std::size_t>(i)] = sum;
+    }
+    next[static_cast<std::size_t>(count)] = gains.decay * force;
+    z = next;
   }
   return result;
 }

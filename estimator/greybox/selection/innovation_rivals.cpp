@@ -101,11 +101,10 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
            std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
   });
   rivals.resize(std::min(rivals.size(), kRivalFinalists));
-  std::vector<InnovationStage> found(rivals.size());
+  std::vector<InnovationStage> found = settled(plain, without, rivals);
   const unsigned threads = plain.options.threads;
   const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
   in_parallel(rivals.size(), threads, [&](std::size_t i) {
-    found[i] = settled(plain, without, rivals[i]);
     const double behind_nats = 0.5 * (penalised(found[i]) - penalised(final));
     if (!(behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats)) return;
     InnovationStage polished = settled(plain, found[i].model, found[i].noise, kMostTurns, width);

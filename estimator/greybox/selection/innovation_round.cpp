@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -134,27 +133,29 @@ class RoundTrials {
     progress_.of += static_cast<int>(chosen.size());
     stages_.resize(trials_.size());
     polished_.resize(trials_.size(), 0);
-    in_parallel(chosen.size(), plain_.options.threads, [&](std::size_t k) {
-      if (!plain_.cancelled()) settle(chosen[k]);
-    });
+    std::vector<InnovationTrial> unknown;
+    for (const std::size_t i : chosen) {
+      InnovationTrial& trial = unknown.emplace_back(trials_[i]);
+      if (!trial.candidate.settled) continue;
+      trial.starts = {trials_[i].starts.back()};
+      trial.elsewhere.clear();
+    }
+    std::vector<InnovationStage> reached =
+        settled(plain_, stage_, unknown, [&](std::size_t k) { report_progress(chosen[k]); });
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const std::size_t i = chosen[k];
+      if (!(reached[k].minus_two_log < stages_[i].minus_two_log)) continue;
+      take(i, std::move(reached[k]));
+      trials_[i].candidate.settled = true;
+      polished_[i] = 0;
+    }
   }
 
-  void settle(std::size_t i) {
-    InnovationCandidate& candidate = trials_[i].candidate;
-    InnovationTrial unknown = trials_[i];
-    if (candidate.settled) {
-      unknown.starts = {trials_[i].starts.back()};
-      unknown.elsewhere.clear();
-    }
-    InnovationStage reached = settled(plain_, stage_, unknown);
-    if (!(reached.minus_two_log < stages_[i].minus_two_log)) return;
-    take(i, std::move(reached));
-    candidate.settled = true;
-    polished_[i] = 0;
+  void report_progress(std::size_t trial) {
     if (!plain_.options.progress) return;
-    const std::lock_guard lock(reporting_);
+    const std::string& effect = trials_[trial].candidate.effect;
     ++progress_.done;
-    progress_.effect = candidate.effect.empty() ? "a spectral line" : candidate.effect;
+    progress_.effect = effect.empty() ? "a spectral line" : effect;
     plain_.options.progress(progress_);
   }
 
@@ -202,7 +203,6 @@ class RoundTrials {
   std::vector<InnovationStage> stages_;
   std::vector<char> polished_;
   SearchProgress progress_;
-  std::mutex reporting_;
 };
 
 }  // namespace

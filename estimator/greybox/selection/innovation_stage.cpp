@@ -156,9 +156,9 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
 
 namespace {
 
-InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
-                             const disturbance::NoiseModel& start, int turns,
-                             SimulationWidth width) {
+SettledMemo::Settled settled_anew(const SearchContext& plain, ModelStage model,
+                                  const disturbance::NoiseModel& start, int turns,
+                                  SimulationWidth width) {
   if (plain.cancelled()) return {};
   InnovationStage stage;
   stage.model = std::move(model);
@@ -170,14 +170,15 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
     FitSummary& fitted = stage.model.fitted;
     std::vector<ParameterSubset> starts = {{fitted.parameters, fitted.theta}};
     if (*other != fitted.theta) starts.push_back({fitted.parameters, *other});
-    const LikeliestStart likeliest =
-        likeliest_start(plain, std::move(starts), start, width.threads);
-    stage.noise.force_place = likeliest.force_place;
+    LikeliestStart likeliest = likeliest_start(plain, std::move(starts), start, width.threads);
+    stage.noise = std::move(likeliest.noise);
     if (likeliest.start.start != fitted.theta)
       *other = std::exchange(fitted.theta, likeliest.start.start);
   }
-  InnovationStage best;
+  SettledMemo::Settled result;
+  InnovationStage& best = result.stage;
   for (int i = 0; i < turns && !plain.cancelled(); ++i) {
+    result.turns = i + 1;
     const FitSummary& fitted = stage.model.fitted;
     const auto estimate_noise = [&] {
       stage.noise =
@@ -201,26 +202,29 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
     other.reset();
     const double gain = penalised(best) - penalised(stage);
     if (gain > 0.0) best = stage;
-    if (gain < kSettled) break;
+    result.converged = gain < kSettled;
+    if (result.converged) break;
     if (i + 1 < turns) {
       disturbance::tune_frequencies(stage.context.problem.model, stage.context.problem.data,
                                     stage.model.fitted.parameters, stage.model.fitted.theta,
                                     stage.linear, stage.noise);
     }
   }
-  return best;
+  return result;
 }
 
 }  // namespace
 
 InnovationStage settled(const SearchContext& plain, ModelStage model,
                         const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
-  if (!plain.memo) return settled_anew(plain, std::move(model), start, turns, width);
-  const std::string key = SettledMemo::key_of(plain, model, start, turns, width);
-  if (std::optional<InnovationStage> known = plain.memo->find(plain, key)) return *std::move(known);
-  InnovationStage stage = settled_anew(plain, std::move(model), start, turns, width);
-  if (!plain.cancelled() && std::isfinite(stage.minus_two_log)) plain.memo->keep(key, stage);
-  return stage;
+  if (!plain.memo) return settled_anew(plain, std::move(model), start, turns, width).stage;
+  const std::string key = SettledMemo::key_of(plain, model, start, width);
+  if (std::optional<InnovationStage> known = plain.memo->find(plain, key, turns))
+    return *std::move(known);
+  SettledMemo::Settled anew = settled_anew(plain, std::move(model), start, turns, width);
+  if (!plain.cancelled() && std::isfinite(anew.stage.minus_two_log))
+    plain.memo->keep(key, turns, anew);
+  return std::move(anew.stage);
 }
 
 FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {

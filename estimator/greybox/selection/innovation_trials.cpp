@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
@@ -297,44 +298,89 @@ void sort_by_gain(std::vector<InnovationTrial>& trials) {
                    });
 }
 
-InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
-                        const InnovationTrial& trial) {
+namespace {
+
+/// A start of a trial with its noise model.
+struct PlacedStart {
+  std::size_t trial;
+  ModelStage model;
+  NoiseModel noise;
+};
+
+bool is_line(const InnovationTrial& trial) { return trial.candidate.effect.empty(); }
+
+NoiseModel noise_of(const InnovationStage& stage, const InnovationTrial& trial) {
   NoiseModel noise = stage.noise;
-  const bool is_line = trial.candidate.effect.empty();
-  if (is_line) noise.lines.push_back(trial.candidate.line);
-  InnovationStage best;
-  // an optimum beyond the effect's range, which no search takes, hides none within it
-  const std::size_t before = stage.model.fitted.parameters.size();
-  const auto is_better = [&](const InnovationStage& one) {
-    const bool has_best = std::isfinite(best.minus_two_log);
-    if (has_best && std::isfinite(one.minus_two_log) && !trial.elsewhere.empty()) {
-      const bool out = leaves_its_range(one.model.fitted, before);
-      if (out != leaves_its_range(best.model.fitted, before)) return !out;
+  if (is_line(trial)) noise.lines.push_back(trial.candidate.line);
+  return noise;
+}
+
+std::vector<PlacedStart> placed_starts(const SearchContext& plain, const InnovationStage& stage,
+                                       std::span<const InnovationTrial> trials) {
+  std::vector<PlacedStart> starts;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const InnovationTrial& trial = trials[i];
+    const NoiseModel noise = noise_of(stage, trial);
+    for (const ModelStage& start : trial.starts) {
+      if (trial.simulated || trial.candidate.gain_nats > 0.0) starts.push_back({i, start, noise});
     }
-    return one.minus_two_log < best.minus_two_log;
-  };
-  const auto try_start = [&](const ModelStage& start, double force_place) {
-    noise.force_place = force_place;
-    const NoiseModel own = is_line ? noise : with_likelier_sites(plain, start, noise);
-    InnovationStage one = settled(plain, start, own, 1, SimulationWidth{});
-    if (is_better(one)) best = std::move(one);
-  };
-  for (const ModelStage& start : trial.starts) {
-    if (trial.simulated || trial.candidate.gain_nats > 0.0)
-      try_start(start, stage.noise.force_place);
+    for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
+      LikeliestStart likeliest = likeliest_start(plain, side, noise, plain.options.threads);
+      if (!(likeliest.minus_two_log < stage.minus_two_log)) continue;
+      ModelStage start{trial.starts.front().added, {}};
+      start.fitted.parameters = std::move(likeliest.start.parameters);
+      start.fitted.theta = std::move(likeliest.start.start);
+      starts.push_back({i, std::move(start), std::move(likeliest.noise)});
+    }
   }
-  for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
-    LikeliestStart likeliest = likeliest_start(plain, side, noise, SimulationWidth{}.threads);
-    if (!(likeliest.minus_two_log < stage.minus_two_log)) continue;
-    ModelStage start{trial.starts.front().added, {}};
-    start.fitted.parameters = std::move(likeliest.start.parameters);
-    start.fitted.theta = std::move(likeliest.start.start);
-    try_start(start, likeliest.force_place);
+  return starts;
+}
+
+/// Takes a stage where it is better than the trial's best. An optimum beyond the effect's range,
+/// which no search takes, hides none within it.
+void take_better(const InnovationTrial& trial, std::size_t parameters_before, InnovationStage one,
+                 InnovationStage& best) {
+  const bool has_best = std::isfinite(best.minus_two_log);
+  bool better = one.minus_two_log < best.minus_two_log;
+  if (has_best && std::isfinite(one.minus_two_log) && !trial.elsewhere.empty()) {
+    const bool out = leaves_its_range(one.model.fitted, parameters_before);
+    if (out != leaves_its_range(best.model.fitted, parameters_before)) better = !out;
   }
-  if (trial.elsewhere.empty() || !std::isfinite(best.minus_two_log)) return best;
-  // where the force acts shows once the resonance is found
-  InnovationStage moved = settled(plain, best.model, with_force_on_other_mass(best), 1, {});
-  if (is_better(moved)) best = std::move(moved);
+  if (better) best = std::move(one);
+}
+
+}  // namespace
+
+std::vector<InnovationStage> settled(const SearchContext& plain, const InnovationStage& stage,
+                                     std::span<const InnovationTrial> trials,
+                                     const std::function<void(std::size_t trial)>& on_done) {
+  const unsigned threads = plain.options.threads;
+  const std::size_t before = stage.model.fitted.parameters.size();
+  std::vector<InnovationStage> best(trials.size());
+  // all starts at once: some trials have several times as many as others
+  std::vector<PlacedStart> starts = placed_starts(plain, stage, trials);
+  std::vector<InnovationStage> reached(starts.size());
+  std::vector<std::size_t> left(trials.size(), 0);
+  for (const PlacedStart& start : starts) ++left[start.trial];
+  std::mutex counting;
+  in_parallel(starts.size(), threads, [&](std::size_t k) {
+    PlacedStart& start = starts[k];
+    if (!is_line(trials[start.trial]))
+      start.noise = with_likelier_sites(plain, start.model, std::move(start.noise));
+    reached[k] = settled(plain, std::move(start.model), start.noise, 1, SimulationWidth{});
+    const std::lock_guard lock(counting);
+    if (--left[start.trial] == 0 && on_done && !plain.cancelled()) on_done(start.trial);
+  });
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    const std::size_t i = starts[k].trial;
+    take_better(trials[i], before, std::move(reached[k]), best[i]);
+  }
+  in_parallel(trials.size(), threads, [&](std::size_t i) {
+    if (trials[i].elsewhere.empty() || !std::isfinite(best[i].minus_two_log)) return;
+    // where the force acts shows once the resonance is found
+    take_better(trials[i], before,
+                settled(plain, best[i].model, with_force_on_other_mass(best[i]), 1, {}), best[i]);
+  });
   return best;
 }
 

@@ -1,12 +1,14 @@
 #include "estimator/greybox/selection/likeliest_start.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "estimator/greybox/disturbance/model_ensemble.h"
 #include "estimator/greybox/sensor_place.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 
@@ -14,8 +16,11 @@ namespace {
 
 constexpr double kTriedShares[] = {0.15, 0.3, 0.6};
 constexpr double kTriedDamping_ratio = 0.02;
-/// Fall of -2 log L below which a step of a noise model's search is the last.
+/// Fall of -2 log L below which a step of a noise model's search is the last: where many starts are
+/// told apart, and among the likeliest of them.
+constexpr double kRoughStep = 100.0;
 constexpr double kLastStep = 1.0;
+constexpr std::size_t kFinalists = 3;
 
 /// True where the model at these values has a second mass.
 bool has_swing(const plant_sim::ModelFile& model, const FitSummary& at) {
@@ -23,37 +28,66 @@ bool has_swing(const plant_sim::ModelFile& model, const FitSummary& at) {
                          0);
 }
 
+/// A start with the noise model that is searched for it.
+struct Tried {
+  std::size_t start;
+  FitSummary at;
+  disturbance::NoiseModel noise;
+  double minus_two_log = std::numeric_limits<double>::infinity();
+
+  void search_noise(const DiagnosisProblem& problem, unsigned threads, double enough) {
+    const disturbance::Linearisations linear = disturbance::linearise(
+        problem.model, problem.data, at.parameters, at.theta, noise.force_place);
+    disturbance::NoiseEstimate found = disturbance::estimate_noise(
+        problem.model, problem.data, at.parameters, at.theta, linear, noise, threads, enough);
+    noise = std::move(found.noise);
+    minus_two_log = prior_cost(at) + found.minus_two_log_likelihood;
+  }
+};
+
+disturbance::NoiseModel on_place(disturbance::NoiseModel noise, double force_place) {
+  noise.force_place = force_place;
+  return noise;
+}
+
 }  // namespace
 
 LikeliestStart likeliest_start(const SearchContext& plain, std::vector<ParameterSubset> starts,
                                const disturbance::NoiseModel& noise, unsigned threads) {
   const DiagnosisProblem& problem = plain.problem;
-  LikeliestStart best;
-  best.force_place = noise.force_place;
-  std::size_t chosen = 0;
+  std::vector<Tried> all;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     FitSummary at;
     at.parameters = starts[i].parameters;
     at.theta = starts[i].start;
-    std::vector<double> places = {noise.force_place};
-    const bool swings = has_swing(problem.model, at);
-    if (swings) places = {0.0, 1.0};
-    if (!swings && starts.size() == 1) break;
-    for (const double place : places) {
-      if (plain.cancelled()) break;
-      disturbance::NoiseModel placed = noise;
-      placed.force_place = place;
-      const disturbance::Linearisations linear =
-          disturbance::linearise(problem.model, problem.data, at.parameters, at.theta, place);
-      const double cost =
-          prior_cost(at) + disturbance::estimate_noise(problem.model, problem.data, at.parameters,
-                                                       at.theta, linear, placed, threads, kLastStep)
-                               .minus_two_log_likelihood;
-      if (!(cost < best.minus_two_log)) continue;
-      best.minus_two_log = cost;
-      best.force_place = place;
-      chosen = i;
+    if (has_swing(problem.model, at)) {
+      for (const double place : {0.0, 1.0}) all.push_back(Tried{i, at, on_place(noise, place)});
+    } else if (starts.size() > 1) {
+      all.push_back(Tried{i, at, noise});
     }
+  }
+  const auto search_noise = [&](double enough) {
+    // the first search of noise models goes several ways at once; many of them share the threads
+    const unsigned own = all.size() == 1 ? threads : 1;
+    in_parallel(all.size(), threads, [&](std::size_t k) {
+      if (!plain.cancelled()) all[k].search_noise(problem, own, enough);
+    });
+    std::stable_sort(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
+      return a.minus_two_log < b.minus_two_log;
+    });
+  };
+  if (all.size() > kFinalists) {
+    search_noise(kRoughStep);
+    all.resize(kFinalists);
+  }
+  search_noise(kLastStep);
+  LikeliestStart best;
+  best.noise = noise;
+  std::size_t chosen = 0;
+  if (!all.empty() && std::isfinite(all.front().minus_two_log)) {
+    chosen = all.front().start;
+    best.minus_two_log = all.front().minus_two_log;
+    best.noise = std::move(all.front().noise);
   }
   best.start = std::move(starts[chosen]);
   return best;

@@ -15,7 +15,7 @@ struct LikeliestStart {
   ParameterSubset start;
   /// Priors included; infinite for an only start without a second mass, which is not evaluated.
   double minus_two_log = std::numeric_limits<double>::infinity();
-  double force_place = plant_sim::kPlaceOfSensor;  ///< NoiseModel's
+  disturbance::NoiseModel noise;  ///< found with it; as given for a start that is not evaluated
 };
 
 /// The likeliest of `starts` (not empty), each linearised and with a noise model searched from

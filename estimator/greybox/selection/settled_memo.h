@@ -19,18 +19,26 @@ namespace estimator::greybox::selection {
 /// whether it is kept never changes an answer.
 class SettledMemo {
  public:
-  /// Bytes of everything that settled() depends on: records, model with the effects in use,
-  /// parameters, noise model, turns and the width of its simulations. `plain`: data without
+  /// A stage after a number of turns, which more do not change where it has converged.
+  struct Settled {
+    InnovationStage stage;
+    int turns = 0;
+    bool converged = false;
+  };
+
+  /// Bytes of everything but the turns that settled() depends on: records, model with the effects
+  /// in use, parameters, noise model and the width of its simulations. `plain`: data without
   /// innovations.
   [[nodiscard]] static std::string key_of(const SearchContext& plain, const ModelStage& model,
-                                          const disturbance::NoiseModel& start, int turns,
+                                          const disturbance::NoiseModel& start,
                                           SimulationWidth width);
 
-  /// The stage kept under the key, in the context of `plain`.
+  /// The stage that at most `turns` lead to, kept under the key, in the context of `plain`.
   [[nodiscard]] std::optional<InnovationStage> find(const SearchContext& plain,
-                                                    const std::string& key);
-  /// Drops the stages that were not asked for the longest while all take more than `most_bytes`.
-  void keep(const std::string& key, const InnovationStage& stage);
+                                                    const std::string& key, int turns);
+  /// Keeps what settled() found within at most `turns`. Drops the stages that were not asked for
+  /// the longest while all take more than `most_bytes`.
+  void keep(const std::string& key, int turns, const Settled& settled);
 
   [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
 
@@ -42,12 +50,16 @@ class SettledMemo {
   struct Kept {
     InnovationStage stage;
     std::vector<std::shared_ptr<const InnovationGains>> gains;
+    int turns = 0;
     std::size_t size_bytes = 0;
   };
   struct Entry {
     std::shared_ptr<const Kept> kept;
     std::list<const std::string*>::iterator use;
   };
+
+  /// The stage kept under a key with its turns, the latest asked for from now on; null for none.
+  std::shared_ptr<const Kept> use(const std::string& key);
 
   std::size_t most_bytes_;
   std::mutex mutex_;

@@ -55,7 +55,7 @@ TEST(LikeliestStart, HasTheRecordsResonanceAndThePlaceOfItsForce) {
     const LikeliestStart best = found(context, {21.0, 17.0, 14.0});
     ASSERT_EQ(best.start.start.size(), 1);
     EXPECT_NEAR(best.start.parameters.front().to_physical(best.start.start[0]), 17.0, 1e-6);
-    EXPECT_EQ(best.force_place, on_second ? 1.0 : 0.0);
+    EXPECT_EQ(best.noise.force_place, on_second ? 1.0 : 0.0);
     EXPECT_LT(best.minus_two_log, found(context, {21.0}).minus_two_log);
   }
 }
