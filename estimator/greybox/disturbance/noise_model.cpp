@@ -343,9 +343,11 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   if (start.noise.sensor_m > 0.0) points.back() = within(point_of(start.noise));
   std::vector<double> costs = likelihood(points);
   const auto least = std::min_element(costs.begin(), costs.end());
-  const Minimum best = minimise([&](const std::vector<Point>& at) { return likelihood(at); },
-                                {points[static_cast<std::size_t>(least - costs.begin())], *least},
-                                bounds, enough, threads > 1 ? Lookahead::yes : Lookahead::no);
+  Minimum best{points[static_cast<std::size_t>(least - costs.begin())], *least};
+  if (std::isfinite(enough)) {
+    best = minimise([&](const std::vector<Point>& at) { return likelihood(at); }, best, bounds,
+                    enough, threads > 1 ? Lookahead::yes : Lookahead::no);
+  }
   return {{noise_of(best.at), start.lines, start.waves, start.force_place}, best.value};
 }
 

@@ -82,7 +82,7 @@ struct NoiseEstimate {
 inline constexpr double kLastNoiseStep = 0.1;
 
 /// `start`: lines are kept, its noise is one of the starts when its sensor_m is positive. `enough`:
-/// as kLastNoiseStep.
+/// as kLastNoiseStep; infinite: the likeliest of a coarse grid will do.
 [[nodiscard]] NoiseEstimate estimate_noise(const plant_sim::ModelFile& model,
                                            const FitDataset& data,
                                            const std::vector<FreeParameter>& parameters,

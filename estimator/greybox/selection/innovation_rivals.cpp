@@ -7,6 +7,7 @@
 
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/settled_trials.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -101,7 +102,7 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
            std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
   });
   rivals.resize(std::min(rivals.size(), kRivalFinalists));
-  std::vector<InnovationStage> found = settled(plain, without, rivals);
+  std::vector<InnovationStage> found = settled(plain, without, rivals, final.minus_two_log);
   const unsigned threads = plain.options.threads;
   const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
   in_parallel(rivals.size(), threads, [&](std::size_t i) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
@@ -55,34 +54,6 @@ std::vector<plant_sim::EffectInfo> absent_from(const SearchContext& context,
     }
   }
   return effects;
-}
-
-/// The lines at the sites where the model makes them likeliest: one that lacks an effect may have
-/// put them where they make up for it.
-NoiseModel with_likelier_sites(const SearchContext& plain, const ModelStage& start,
-                               NoiseModel noise) {
-  if (noise.lines.empty() || plain.cancelled()) return noise;
-  const plant_sim::ModelFile& model = plain.problem.model;
-  const FitDataset& data = plain.problem.data;
-  const FitSummary& at = start.fitted;
-  const disturbance::Linearisations linear =
-      disturbance::linearise(model, data, at.parameters, at.theta, noise.force_place);
-  const auto cost = [&](const NoiseModel& tried) {
-    return disturbance::minus_two_log_likelihood(model, data, at.parameters, at.theta, linear,
-                                                 tried);
-  };
-  double least = cost(noise);
-  for (std::size_t i = 0; i < noise.lines.size(); ++i) {
-    for (const disturbance::LineSite site : disturbance::sites_of(linear.front())) {
-      if (site == noise.lines[i].site) continue;
-      NoiseModel other = moved(noise, i, site);
-      const double now = cost(other);
-      if (!(now < least)) continue;
-      least = now;
-      noise = std::move(other);
-    }
-  }
-  return noise;
 }
 
 double squares_and_priors(const InnovationStage& stage) {
@@ -296,92 +267,6 @@ void sort_by_gain(std::vector<InnovationTrial>& trials) {
                    [](const InnovationTrial& a, const InnovationTrial& b) {
                      return a.candidate.gain_nats > b.candidate.gain_nats;
                    });
-}
-
-namespace {
-
-/// A start of a trial with its noise model.
-struct PlacedStart {
-  std::size_t trial;
-  ModelStage model;
-  NoiseModel noise;
-};
-
-bool is_line(const InnovationTrial& trial) { return trial.candidate.effect.empty(); }
-
-NoiseModel noise_of(const InnovationStage& stage, const InnovationTrial& trial) {
-  NoiseModel noise = stage.noise;
-  if (is_line(trial)) noise.lines.push_back(trial.candidate.line);
-  return noise;
-}
-
-std::vector<PlacedStart> placed_starts(const SearchContext& plain, const InnovationStage& stage,
-                                       std::span<const InnovationTrial> trials) {
-  std::vector<PlacedStart> starts;
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    const InnovationTrial& trial = trials[i];
-    const NoiseModel noise = noise_of(stage, trial);
-    for (const ModelStage& start : trial.starts) {
-      if (trial.simulated || trial.candidate.gain_nats > 0.0) starts.push_back({i, start, noise});
-    }
-    for (const std::vector<ParameterSubset>& side : trial.elsewhere) {
-      LikeliestStart likeliest = likeliest_start(plain, side, noise, plain.options.threads);
-      if (!(likeliest.minus_two_log < stage.minus_two_log)) continue;
-      ModelStage start{trial.starts.front().added, {}};
-      start.fitted.parameters = std::move(likeliest.start.parameters);
-      start.fitted.theta = std::move(likeliest.start.start);
-      starts.push_back({i, std::move(start), std::move(likeliest.noise)});
-    }
-  }
-  return starts;
-}
-
-/// Takes a stage where it is better than the trial's best. An optimum beyond the effect's range,
-/// which no search takes, hides none within it.
-void take_better(const InnovationTrial& trial, std::size_t parameters_before, InnovationStage one,
-                 InnovationStage& best) {
-  const bool has_best = std::isfinite(best.minus_two_log);
-  bool better = one.minus_two_log < best.minus_two_log;
-  if (has_best && std::isfinite(one.minus_two_log) && !trial.elsewhere.empty()) {
-    const bool out = leaves_its_range(one.model.fitted, parameters_before);
-    if (out != leaves_its_range(best.model.fitted, parameters_before)) better = !out;
-  }
-  if (better) best = std::move(one);
-}
-
-}  // namespace
-
-std::vector<InnovationStage> settled(const SearchContext& plain, const InnovationStage& stage,
-                                     std::span<const InnovationTrial> trials,
-                                     const std::function<void(std::size_t trial)>& on_done) {
-  const unsigned threads = plain.options.threads;
-  const std::size_t before = stage.model.fitted.parameters.size();
-  std::vector<InnovationStage> best(trials.size());
-  // all starts at once: some trials have several times as many as others
-  std::vector<PlacedStart> starts = placed_starts(plain, stage, trials);
-  std::vector<InnovationStage> reached(starts.size());
-  std::vector<std::size_t> left(trials.size(), 0);
-  for (const PlacedStart& start : starts) ++left[start.trial];
-  std::mutex counting;
-  in_parallel(starts.size(), threads, [&](std::size_t k) {
-    PlacedStart& start = starts[k];
-    if (!is_line(trials[start.trial]))
-      start.noise = with_likelier_sites(plain, start.model, std::move(start.noise));
-    reached[k] = settled(plain, std::move(start.model), start.noise, 1, SimulationWidth{});
-    const std::lock_guard lock(counting);
-    if (--left[start.trial] == 0 && on_done && !plain.cancelled()) on_done(start.trial);
-  });
-  for (std::size_t k = 0; k < starts.size(); ++k) {
-    const std::size_t i = starts[k].trial;
-    take_better(trials[i], before, std::move(reached[k]), best[i]);
-  }
-  in_parallel(trials.size(), threads, [&](std::size_t i) {
-    if (trials[i].elsewhere.empty() || !std::isfinite(best[i].minus_two_log)) return;
-    // where the force acts shows once the resonance is found
-    take_better(trials[i], before,
-                settled(plain, best[i].model, with_force_on_other_mass(best[i]), 1, {}), best[i]);
-  });
-  return best;
 }
 
 }  // namespace estimator::greybox::selection

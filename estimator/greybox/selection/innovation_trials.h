@@ -1,9 +1,7 @@
 // Candidates of a round of the innovation search before they get noise models of their own.
 #pragma once
 
-#include <functional>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -91,12 +89,5 @@ class SimulatedEffectsMemo {
 void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,
                           std::vector<InnovationTrial>& trials);
 void sort_by_gain(std::vector<InnovationTrial>& trials);
-
-/// The best of each trial's starts with a noise model of its own; unfinished for a trial of which
-/// no start promises anything. `on_done` is called as trials end, by one thread at a time.
-[[nodiscard]] std::vector<InnovationStage> settled(
-    const SearchContext& plain, const InnovationStage& stage,
-    std::span<const InnovationTrial> trials,
-    const std::function<void(std::size_t trial)>& on_done = {});
 
 }  // namespace estimator::greybox::selection

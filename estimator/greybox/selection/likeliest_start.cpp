@@ -17,9 +17,11 @@ namespace {
 constexpr double kTriedShares[] = {0.15, 0.3, 0.6};
 constexpr double kTriedDamping_ratio = 0.02;
 /// Fall of -2 log L below which a step of a noise model's search is the last: where many starts are
-/// told apart, and among the likeliest of them.
+/// told apart, among those that are followed, and among the likeliest.
+constexpr double kGridAlone = std::numeric_limits<double>::infinity();
 constexpr double kRoughStep = 100.0;
 constexpr double kLastStep = 1.0;
+constexpr std::size_t kFollowed = 6;
 constexpr std::size_t kFinalists = 3;
 
 /// True where the model at these values has a second mass.
@@ -53,7 +55,8 @@ disturbance::NoiseModel on_place(disturbance::NoiseModel noise, double force_pla
 }  // namespace
 
 LikeliestStart likeliest_start(const SearchContext& plain, std::vector<ParameterSubset> starts,
-                               const disturbance::NoiseModel& noise, unsigned threads) {
+                               const disturbance::NoiseModel& noise, unsigned threads,
+                               double hopeless_minus_two_log) {
   const DiagnosisProblem& problem = plain.problem;
   std::vector<Tried> all;
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -77,8 +80,14 @@ LikeliestStart likeliest_start(const SearchContext& plain, std::vector<Parameter
     });
   };
   if (all.size() > kFinalists) {
-    search_noise(kRoughStep);
-    all.resize(kFinalists);
+    search_noise(kGridAlone);
+    std::erase_if(all,
+                  [&](const Tried& one) { return !(one.minus_two_log < hopeless_minus_two_log); });
+    all.resize(std::min(all.size(), kFollowed));
+    if (all.size() > kFinalists) {
+      search_noise(kRoughStep);
+      all.resize(kFinalists);
+    }
   }
   search_noise(kLastStep);
   LikeliestStart best;

@@ -13,18 +13,20 @@ namespace estimator::greybox::selection {
 
 struct LikeliestStart {
   ParameterSubset start;
-  /// Priors included; infinite for an only start without a second mass, which is not evaluated.
+  /// Priors included; infinite where no start is likely enough, and for an only start without a
+  /// second mass, which is not evaluated.
   double minus_two_log = std::numeric_limits<double>::infinity();
   disturbance::NoiseModel noise;  ///< found with it; as given for a start that is not evaluated
 };
 
 /// The likeliest of `starts` (not empty), each linearised and with a noise model searched from
 /// `noise`, and where a second mass swings with the random force on either mass; the first where
-/// nothing is likelier.
-[[nodiscard]] LikeliestStart likeliest_start(const SearchContext& plain,
-                                             std::vector<ParameterSubset> starts,
-                                             const disturbance::NoiseModel& noise,
-                                             unsigned threads);
+/// none is. Of many starts those are followed that a first look at their noise models finds
+/// likelier than -2 log L = `hopeless_minus_two_log`.
+[[nodiscard]] LikeliestStart likeliest_start(
+    const SearchContext& plain, std::vector<ParameterSubset> starts,
+    const disturbance::NoiseModel& noise, unsigned threads,
+    double hopeless_minus_two_log = std::numeric_limits<double>::infinity());
 
 /// Models with the resonance of `start`: shares of the mass and a damping that structures have, the
 /// sensor, where it is free, on the second mass; none for a model without one.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/resonance_or_line.h"
+#include "estimator/greybox/selection/settled_trials.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
