@@ -83,6 +83,13 @@ ordered_json changing_of(const selection::Diagnosis& d) {
   return changes;
 }
 
+/// Null where simulations alone were judged.
+ordered_json prediction_of(const selection::Diagnosis& d) {
+  if (!std::isfinite(d.prediction_after_m)) return nullptr;
+  return {{"rms_before_m", number_or_null(d.prediction_before_m)},
+          {"rms_after_m", number_or_null(d.prediction_after_m)}};
+}
+
 ordered_json numbers_of(const std::vector<double>& values) {
   ordered_json list = ordered_json::array();
   for (const double value : values) list.push_back(number_or_null(value));
@@ -184,6 +191,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["changing"] = changing_of(d);
   json["laws"] = laws_of(outcome);
   json["resonance"] = present::resonance_json(outcome.resonance);
+  json["prediction"] = prediction_of(d);
   json["disturbance"] = present::disturbance_json(d.disturbance);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},

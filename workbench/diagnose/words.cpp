@@ -158,16 +158,16 @@ std::string possible_words(const selection::Diagnosis& d) {
   return config::schema::joined_by(doubts, text, "; ");
 }
 
-/// `taken`: the effects of the better model.
-std::string refused_words(const selection::RefusedModel& model,
-                          const std::vector<std::string>& taken) {
+std::string refused_words(const selection::RefusedModel& model, const selection::Diagnosis& d) {
+  const std::vector<std::string>& taken = d.missing;
   const bool part =
       std::all_of(model.effects.begin(), model.effects.end(), [&](const std::string& effect) {
         return std::find(taken.begin(), taken.end(), effect) != taken.end();
       });
-  const std::string what = "Not taken: " + config::schema::joined(model.effects, " + ") +
-                           (part ? " alone" : "") + ", which would leave " +
-                           config::units::length_words(model.validation_rms_m);
+  const std::string what =
+      "Not taken: " + config::schema::joined(model.effects, " + ") + (part ? " alone" : "") +
+      (d.by_innovations ? ", which fitted to simulations would leave " : ", which would leave ") +
+      config::units::length_words(model.validation_rms_m);
   switch (model.why) {
     case selection::Refusal::unsupported:
       return what + ": one half of the record does not support it.";
@@ -177,6 +177,16 @@ std::string refused_words(const selection::RefusedModel& model,
       break;
   }
   return what + ": a disturbance explains the samples better.";
+}
+
+/// What the predictor that judged the models leaves: an error of simulations, which holds the
+/// disturbance, hardly shows what is missing.
+std::string prediction_words(const selection::Diagnosis& d) {
+  if (!d.by_innovations || !std::isfinite(d.prediction_after_m)) return "";
+  return " One sample ahead, predictions are off by " +
+         config::units::length_words(d.prediction_before_m) + " without and by " +
+         config::units::length_words(d.prediction_after_m) + " with " +
+         (d.missing.size() > 1 ? "them." : "it.");
 }
 
 std::string fall_words(const selection::Diagnosis& d) {
@@ -193,7 +203,7 @@ std::string fall_words(const selection::Diagnosis& d) {
          config::units::length_words(d.rms_after_m) +
          (d.rms_after_m < d.floor_m() ? ", within " + floor_name(d) + ", "
                                       : "; " + floor_name(d) + " is ") +
-         config::units::length_words(d.floor_m()) + ".";
+         config::units::length_words(d.floor_m()) + "." + prediction_words(d);
 }
 
 }  // namespace
@@ -302,7 +312,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back("Not established: " + possible_words(d) + ".");
   }
   for (const selection::RefusedModel& model : d.search.refused) {
-    out.push_back(refused_words(model, d.missing));
+    out.push_back(refused_words(model, d));
   }
   for (std::string& text : rival_words(d)) out.push_back(std::move(text));
   const std::string held = held_words(outcome);

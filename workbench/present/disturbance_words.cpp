@@ -24,19 +24,25 @@ std::string random_words(const selection::Disturbance& d) {
                      config::units::three_digits(d.corner_Hz));
 }
 
+std::string kind_words(const std::string& as, double amplitude) {
+  const char* const name = as == "pressure" ? "amplitude_Pa"
+                           : as == "sensor" ? "amplitude_m"
+                           : as == "force"  ? "amplitude_N"
+                                            : "amplitude_mps";
+  const char* const what = as == "pressure" ? "a pulsation of the supply pressure"
+                           : as == "sensor" ? "a vibration of the position sensor"
+                           : as == "force"  ? "a periodic force"
+                                            : "a periodic speed";
+  return std::string(what) + " of " +
+         config::units::words(config::units::quantity(name, amplitude, std::nan("")));
+}
+
 std::string line_words(const selection::DisturbanceLine& line) {
-  const char* const name = line.as == "pressure" ? "amplitude_Pa"
-                           : line.as == "sensor" ? "amplitude_m"
-                           : line.as == "force"  ? "amplitude_N"
-                                                 : "amplitude_mps";
-  const char* const what = line.as == "pressure" ? "a pulsation of the supply pressure"
-                           : line.as == "sensor" ? "a vibration of the position sensor"
-                           : line.as == "force"  ? "a periodic force"
-                                                 : "a periodic speed";
-  return fmt::format(
-      "{} of {} at {:.2f} Hz", what,
-      config::units::words(config::units::quantity(name, line.amplitude, std::nan(""))),
-      line.frequency_Hz);
+  std::vector<std::string> kinds{kind_words(line.as, line.amplitude)};
+  for (const selection::LineRival& rival : line.rivals)
+    kinds.push_back(kind_words(rival.as, rival.amplitude));
+  return fmt::format("{} at {:.2f} Hz", config::schema::listed(kinds, "or"), line.frequency_Hz) +
+         (line.rivals.empty() ? "" : ", which the record does not tell apart");
 }
 
 }  // namespace
@@ -47,7 +53,7 @@ std::string disturbance_words(const selection::Disturbance& disturbance) {
   for (const selection::DisturbanceLine& line : disturbance.lines) {
     parts.push_back(line_words(line));
   }
-  return config::schema::listed(parts);
+  return config::schema::joined(parts, "; ");
 }
 
 }  // namespace workbench::present

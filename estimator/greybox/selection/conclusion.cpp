@@ -348,6 +348,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;
+  result.prediction_before_m = prediction_rms_m(innovations.before);
+  result.prediction_after_m = prediction_rms_m(innovations.final);
   if (physics) {
     // the noise model passes for what is missing: it must not weigh what the values have to explain
     result.disturbance.reset();
@@ -363,6 +365,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       return;
     }
   } else {
+    if (result.disturbance && !context.cancelled())
+      add_line_rivals(without_holdouts(search), innovations.final, *result.disturbance);
     take_parameters(innovations.final, result);
     keep_file_where_better(search, result);
   }

@@ -83,7 +83,11 @@ struct Diagnosis {
   Excitation excitation;  ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
-  bool loses_motion = false;         ///< loses_motion() of the final model
+  /// By innovations: RMS error of predictions by one sample, of the model without effects and of
+  /// the better one, each with its own noise model.
+  double prediction_before_m = std::numeric_limits<double>::quiet_NaN();
+  double prediction_after_m = std::numeric_limits<double>::quiet_NaN();
+  bool loses_motion = false;  ///< loses_motion() of the final model
   /// By innovations: what the absence of each effect would cost, and the gain of the best curve
   /// over a variable of the motion.
   std::map<std::string, double> gains_nats;

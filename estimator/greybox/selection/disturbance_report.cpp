@@ -125,6 +125,24 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
   return result;
 }
 
+void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
+                     Disturbance& disturbance) {
+  for (std::size_t i = 0; i < disturbance.lines.size(); ++i) {
+    for (const InnovationStage& other : at_other_sites(plain, final, i)) {
+      if (!(other.minus_two_log < final.minus_two_log + 2.0 * kRivals_nats)) continue;
+      double sum = 0.0;
+      double counted = 0.0;
+      for (std::size_t r = 0; r < other.noise.waves[i].size(); ++r) {
+        const auto samples = static_cast<double>(plain.problem.data.records[r].size());
+        sum += samples * other.noise.waves[i][r].squaredNorm();
+        counted += samples;
+      }
+      disturbance.lines[i].rivals.push_back(
+          {site_of(other, other.noise.lines[i].site), std::sqrt(sum / counted)});
+    }
+  }
+}
+
 void limit(Disturbance& disturbance, double rms_m) {
   disturbance.rms_m = std::min(disturbance.rms_m, rms_m);
   for (DisturbanceLine& line : disturbance.lines) line.rms_m = std::min(line.rms_m, rms_m);

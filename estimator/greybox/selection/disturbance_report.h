@@ -10,11 +10,18 @@
 
 namespace estimator::greybox::selection {
 
+/// A kind of line that explains the record about as well in another's place.
+struct LineRival {
+  std::string as;
+  double amplitude = 0.0;
+};
+
 struct DisturbanceLine {
   std::string as;  ///< "force", "pressure", "sensor"; "speed" where the plant has no force
   double frequency_Hz = 0.0;
   double amplitude = 0.0;  ///< N, Pa, m; m/s
   double rms_m = 0.0;      ///< its part of the error of a simulation without friction or play
+  std::vector<LineRival> rivals = {};  ///< as add_line_rivals() finds them
 };
 
 struct Disturbance {
@@ -31,6 +38,11 @@ struct Disturbance {
 /// Nothing where what is found stays below the sensor's noise.
 [[nodiscard]] std::optional<Disturbance> disturbance_of(const SearchContext& context,
                                                         const InnovationSearch& search);
+
+/// Adds the kinds of line that the record does not tell from those found: to a plant that is linear
+/// and stays as it is, a periodic force and a sensor that vibrates look alike.
+void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
+                     Disturbance& disturbance);
 
 /// Limits the disturbance and its lines to `rms_m`, the error that there is: friction and play let
 /// less through than their linearised models do.

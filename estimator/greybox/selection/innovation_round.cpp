@@ -210,15 +210,21 @@ class RoundTrials {
 
 }  // namespace
 
+std::vector<InnovationStage> at_other_sites(const SearchContext& plain,
+                                            const InnovationStage& stage, std::size_t line) {
+  std::vector<disturbance::LineSite> sites = disturbance::sites_of(stage.linear.front());
+  std::erase(sites, stage.noise.lines[line].site);
+  std::vector<InnovationStage> others(sites.size());
+  in_parallel(sites.size(), plain.options.threads, [&](std::size_t k) {
+    others[k] =
+        settled(plain, stage.model, moved(stage.noise, line, sites[k]), 1, SimulationWidth{});
+  });
+  return others;
+}
+
 void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
   for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
-    std::vector<disturbance::LineSite> sites = disturbance::sites_of(stage.linear.front());
-    std::erase(sites, stage.noise.lines[i].site);
-    std::vector<InnovationStage> others(sites.size());
-    in_parallel(sites.size(), plain.options.threads, [&](std::size_t k) {
-      others[k] =
-          settled(plain, stage.model, moved(stage.noise, i, sites[k]), 1, SimulationWidth{});
-    });
+    std::vector<InnovationStage> others = at_other_sites(plain, stage, i);
     const auto best = std::min_element(
         others.begin(), others.end(),
         [](const auto& a, const auto& b) { return a.minus_two_log < b.minus_two_log; });

@@ -30,6 +30,11 @@ struct RoundOptions {
 bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptions& options,
             TrialMemo& memo, std::vector<InnovationRound>& rounds, std::set<std::string>& dropped);
 
+/// The stage with a spectral line at each of the other sites in turn.
+[[nodiscard]] std::vector<InnovationStage> at_other_sites(const SearchContext& plain,
+                                                          const InnovationStage& stage,
+                                                          std::size_t line);
+
 /// Moves each spectral line to the site where the model makes it likeliest: where it enters is
 /// decided before the effects are known that pass it on.
 void reconsider_sites(const SearchContext& plain, InnovationStage& stage);
