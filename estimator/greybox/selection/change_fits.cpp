@@ -92,17 +92,26 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (penalised(stages[i]) < best + 2.0 * behind_nats) near.push_back(i);
   }
-  in_parallel(near.size(), threads, [&](std::size_t k) {
-    const std::size_t i = near[k];
+  if (stages.empty()) return {};
+  std::vector<char> has_noise_model(stages.size(), 0);
+  const auto settle_one = [&](std::size_t i) {
     stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise, 1,
                         SimulationWidth{});
-  });
-  // none of those that could be chosen: the others have no noise model
-  if (std::none_of(near.begin(), near.end(),
-                   [&](std::size_t i) { return std::isfinite(stages[i].minus_two_log); })) {
-    return {};
+    has_noise_model[i] = 1;
+  };
+  in_parallel(near.size(), threads, [&](std::size_t k) { settle_one(near[k]); });
+  // with noise models of their own the near ones may end behind others
+  const auto likeliest = [&] {
+    return static_cast<std::size_t>(
+        std::min_element(stages.begin(), stages.end(),
+                         [](const auto& a, const auto& b) { return penalised(a) < penalised(b); }) -
+        stages.begin());
+  };
+  for (std::size_t i = likeliest(); has_noise_model[i] == 0; i = likeliest()) {
+    if (!std::isfinite(stages[i].minus_two_log)) return {};
+    settle_one(i);
   }
-  return stages;
+  return std::isfinite(stages[likeliest()].minus_two_log) ? stages : std::vector<InnovationStage>{};
 }
 
 InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,

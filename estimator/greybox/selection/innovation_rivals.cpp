@@ -81,8 +81,9 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
                                        const std::string& effect, const InnovationStage& without,
                                        TrialMemo& memo) {
   std::vector<InnovationTrial> rivals = memo.effects_beside(without);
-  // simulations cost more than they find where the search has needed none so far
-  if (!memo.simulated.empty() || leaves_physics(final))
+  // simulations cost more than they find where the search has needed none so far, and no line has
+  // come in since that hid an effect from the stage's gains
+  if (!memo.simulated.empty() || !final.noise.lines.empty() || leaves_physics(final))
     add_simulated_starts(without, memo.simulated.beside(plain, without.model), rivals);
   sort_by_gain(rivals);
   // what a predictor without a resonance gains says nothing about one

@@ -199,8 +199,12 @@ bool is_clearly_likelier(const SearchContext& with_holdouts, const InnovationSta
   std::vector<double> costs(others.size());
   in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
     // with the lines that were seen beside what was found
-    costs[i] = penalised(
-        settled(context, std::move(others[i]), found.noise, kMostTurns, SimulationWidth{}));
+    const InnovationStage once =
+        settled(context, std::move(others[i]), found.noise, 1, SimulationWidth{});
+    costs[i] = penalised(once);
+    if (!(costs[i] < enough + 2.0 * kOutOfReach_nats)) return;
+    costs[i] = std::min(costs[i], penalised(settled(context, once.model, once.noise, kMostTurns,
+                                                    SimulationWidth{})));
   });
   return !context.cancelled() &&
          std::all_of(costs.begin(), costs.end(), [&](double cost) { return enough < cost; });
@@ -237,7 +241,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     extend_fully();
   }
   // at the end, so that it favours no second mass over what is exchanged for it
-  reconsider_force_place(context, stage);
+  reconsider_second_mass(context, stage);
   search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);
   search.final = std::move(stage);

@@ -123,13 +123,10 @@ std::vector<std::vector<ParameterSubset>> starts_elsewhere(const InnovationStage
       return has_sensor_place(side.front()) == has_sensor_place(start);
     });
     ModelStage at = stage.model;
+    at.fitted.parameters = start.parameters;
     at.fitted.theta = start.start;
-    std::vector<ParameterSubset> side = mass_share_starts(start);
-    if (known || side.empty()) continue;
-    const std::vector<ParameterSubset> more =
-        mass_share_starts({start.parameters, with_file_values(stage.context, at)});
-    side.insert(side.end(), more.begin(), more.end());
-    sides.push_back(std::move(side));
+    std::vector<ParameterSubset> side = mass_share_starts(stage.context, at);
+    if (!known && !side.empty()) sides.push_back(std::move(side));
   }
   return sides;
 }

@@ -102,21 +102,22 @@ LikeliestStart likeliest_start(const SearchContext& plain, std::vector<Parameter
   return best;
 }
 
-std::vector<ParameterSubset> mass_share_starts(const ParameterSubset& start) {
-  const bool resonates =
-      std::any_of(start.parameters.begin(), start.parameters.end(),
-                  [](const FreeParameter& p) { return p.name == "second_mass.resonance_Hz"; });
-  if (!resonates) return {};
+std::vector<ParameterSubset> mass_share_starts(const SearchContext& context,
+                                               const ModelStage& model) {
+  const std::vector<FreeParameter>& parameters = model.fitted.parameters;
+  if (!std::isfinite(model.fitted.value("second_mass.resonance_Hz"))) return {};
   std::vector<ParameterSubset> starts;
-  for (const double share : kTriedShares) {
-    ParameterSubset& with = starts.emplace_back(start);
-    for (std::size_t i = 0; i < with.parameters.size(); ++i) {
-      const FreeParameter& p = with.parameters[i];
-      double& theta = with.start[static_cast<Eigen::Index>(i)];
-      if (p.name == "second_mass.mass_ratio") theta = p.to_theta(share);
-      if (p.name == "second_mass.damping_ratio") theta = p.to_theta(kTriedDamping_ratio);
-      if (p.name == "second_mass.sensor_ratio") theta = p.to_theta(1.0);
-      theta = std::clamp(theta, p.lower, p.upper);
+  for (const Eigen::VectorXd& values : {model.fitted.theta, with_file_values(context, model)}) {
+    for (const double share : kTriedShares) {
+      ParameterSubset& with = starts.emplace_back(ParameterSubset{parameters, values});
+      for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const FreeParameter& p = parameters[i];
+        double& theta = with.start[static_cast<Eigen::Index>(i)];
+        if (p.name == "second_mass.mass_ratio") theta = p.to_theta(share);
+        if (p.name == "second_mass.damping_ratio") theta = p.to_theta(kTriedDamping_ratio);
+        if (p.name == "second_mass.sensor_ratio") theta = p.to_theta(1.0);
+        theta = std::clamp(theta, p.lower, p.upper);
+      }
     }
   }
   return starts;

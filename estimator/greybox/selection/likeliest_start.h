@@ -28,8 +28,10 @@ struct LikeliestStart {
     const disturbance::NoiseModel& noise, unsigned threads,
     double hopeless_minus_two_log = std::numeric_limits<double>::infinity());
 
-/// Models with the resonance of `start`: shares of the mass and a damping that structures have, the
-/// sensor, where it is free, on the second mass; none for a model without one.
-[[nodiscard]] std::vector<ParameterSubset> mass_share_starts(const ParameterSubset& start);
+/// Models with the resonance of `model`: shares of the mass and a damping that structures have, the
+/// sensor, where it is free, on the second mass, the plant as the model and as the file have it;
+/// none for a model without one.
+[[nodiscard]] std::vector<ParameterSubset> mass_share_starts(const SearchContext& context,
+                                                             const ModelStage& model);
 
 }  // namespace estimator::greybox::selection

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_rivals.h"
+#include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 
 namespace estimator::greybox::selection {
@@ -73,13 +74,23 @@ std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& p
   return other;
 }
 
-void reconsider_force_place(const SearchContext& plain, InnovationStage& stage) {
-  const double resonance_Hz =
-      stage.model.fitted.value("second_mass.resonance_Hz");  // the file's too
-  if (!std::isfinite(resonance_Hz) || plain.cancelled()) return;
-  InnovationStage other = settled(plain, stage.model, with_force_on_other_mass(stage), kMostTurns,
-                                  wide(plain.options.threads));
-  if (penalised(other) < penalised(stage)) stage = std::move(other);
+void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) {
+  const FitSummary& fitted = stage.model.fitted;
+  if (!std::isfinite(fitted.value("second_mass.resonance_Hz")) || plain.cancelled()) return;
+  const SimulationWidth width = wide(plain.options.threads);
+  const auto take = [&](InnovationStage other) {
+    if (penalised(other) < penalised(stage)) stage = std::move(other);
+  };
+  take(settled(plain, stage.model, with_force_on_other_mass(stage), kMostTurns, width));
+  std::vector<ParameterSubset> shares = mass_share_starts(plain, stage.model);
+  if (shares.empty()) return;
+  LikeliestStart other =
+      likeliest_start(plain, std::move(shares), stage.noise, plain.options.threads);
+  if (!std::isfinite(other.minus_two_log)) return;
+  ModelStage start{stage.model.added, {}};
+  start.fitted.parameters = std::move(other.start.parameters);
+  start.fitted.theta = std::move(other.start.start);
+  take(settled(plain, std::move(start), other.noise, kMostTurns, width));
 }
 
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {

@@ -18,9 +18,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] std::optional<InnovationStage> without_lines_of_resonance(
     const SearchContext& plain, const InnovationStage& stage);
 
-/// Moves the random force to the other of two masses, noise model and parameters converged, where
-/// that is likelier: parameters found with the one place favour it.
-void reconsider_force_place(const SearchContext& plain, InnovationStage& stage);
+/// Moves the random force to the other of two masses, and tries other shares of the mass, noise
+/// model and parameters converged, where that is likelier: parameters found with one place favour
+/// it, and a small share that damps shakes the sensor nearly as a large one that hardly does.
+void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage);
 
 struct LineInstead {
   InnovationStage without;        ///< the stage without the resonance

@@ -20,6 +20,9 @@ using disturbance::NoiseModel;
 constexpr double kFirstLook = 600.0;
 constexpr double kHopefulShare = 0.5;
 constexpr double kHopefulShareOfLine = 0.3;
+/// Share of a resonance by which a fit moves it when the starts about it are to be tried again.
+constexpr double kResonanceMoved = 0.03;
+constexpr const char* kResonance = "second_mass.resonance_Hz";
 
 /// The lines at the sites where the model makes them likeliest: one that lacks an effect may have
 /// put them where they make up for it.
@@ -74,7 +77,7 @@ class SettledTrials {
         if (trial.simulated || trial.candidate.gain_nats > 0.0) starts.push_back({i, start, noise});
       }
     }
-    settle(std::move(starts), on_done);
+    (void)settle(std::move(starts), on_done);
   }
 
   void settle_elsewhere(double found_minus_two_log) {
@@ -83,17 +86,25 @@ class SettledTrials {
                  std::min(hopeless_by(found_minus_two_log), hopeless_by_best()));
     std::vector<PlacedStart> starts;
     for (std::size_t i = 0; i < trials_.size(); ++i) {
+      for (const std::vector<ParameterSubset>& side : trials_[i].elsewhere)
+        add_likeliest(i, side, stage_.noise, hopeless, starts);
+    }
+    std::vector<std::size_t> starts_of;
+    for (const PlacedStart& start : starts) starts_of.push_back(start.trial);
+    const std::vector<InnovationStage> reached = settle(std::move(starts), {});
+    starts.clear();
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      const InnovationStage* const best = best_of(i, starts_of, reached);
+      if (best == nullptr) continue;
       for (const std::vector<ParameterSubset>& side : trials_[i].elsewhere) {
-        LikeliestStart likeliest =
-            likeliest_start(plain_, side, stage_.noise, plain_.options.threads, hopeless);
-        if (!(likeliest.minus_two_log < stage_.minus_two_log)) continue;
-        ModelStage start{trials_[i].starts.front().added, {}};
-        start.fitted.parameters = std::move(likeliest.start.parameters);
-        start.fitted.theta = std::move(likeliest.start.start);
-        starts.push_back({i, std::move(start), std::move(likeliest.noise)});
+        // its shares and dampings were judged at another resonance
+        ModelStage there = with_values_of(side.front(), best->model.fitted);
+        const bool out = is_out_of_range(*best);
+        if (out || has_moved(side.front(), there.fitted))
+          add_likeliest(i, mass_share_starts(plain_, there), best->noise, hopeless, starts);
       }
     }
-    settle(std::move(starts), {});
+    (void)settle(std::move(starts), {});
     in_parallel(trials_.size(), plain_.options.threads, [&](std::size_t i) {
       if (trials_[i].elsewhere.empty() || !(best_[i].minus_two_log < hopeless)) return;
       // where the force acts shows once the resonance is found
@@ -105,8 +116,56 @@ class SettledTrials {
   [[nodiscard]] std::vector<InnovationStage> best() && { return std::move(best_); }
 
  private:
+  void add_likeliest(std::size_t trial, const std::vector<ParameterSubset>& side,
+                     const NoiseModel& noise, double hopeless, std::vector<PlacedStart>& starts) {
+    LikeliestStart likeliest =
+        likeliest_start(plain_, side, noise, plain_.options.threads, hopeless);
+    if (!(likeliest.minus_two_log < stage_.minus_two_log)) return;
+    ModelStage start{trials_[trial].starts.front().added, {}};
+    start.fitted.parameters = std::move(likeliest.start.parameters);
+    start.fitted.theta = std::move(likeliest.start.start);
+    starts.push_back({trial, std::move(start), std::move(likeliest.noise)});
+  }
+
+  /// The likeliest stage of a trial, in its range or not; null: none.
+  [[nodiscard]] static const InnovationStage* best_of(std::size_t trial,
+                                                      const std::vector<std::size_t>& trials,
+                                                      const std::vector<InnovationStage>& reached) {
+    const InnovationStage* best = nullptr;
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+      if (trials[k] != trial || !std::isfinite(reached[k].minus_two_log)) continue;
+      if (best == nullptr || reached[k].minus_two_log < best->minus_two_log) best = &reached[k];
+    }
+    return best;
+  }
+
+  /// A start with the values that a fit gives to its parameters.
+  [[nodiscard]] static ModelStage with_values_of(const ParameterSubset& start,
+                                                 const FitSummary& fitted) {
+    ModelStage model;
+    model.fitted.parameters = start.parameters;
+    model.fitted.theta = start.start;
+    for (std::size_t i = 0; i < start.parameters.size(); ++i) {
+      const FreeParameter& p = start.parameters[i];
+      const double value = fitted.value(p.name);
+      if (!std::isfinite(value)) continue;
+      model.fitted.theta[static_cast<Eigen::Index>(i)] =
+          std::clamp(p.to_theta(value), p.lower, p.upper);
+    }
+    return model;
+  }
+
+  [[nodiscard]] static bool has_moved(const ParameterSubset& start, const FitSummary& to) {
+    FitSummary from;
+    from.parameters = start.parameters;
+    from.theta = start.start;
+    const double from_Hz = from.value(kResonance);
+    return std::abs(to.value(kResonance) - from_Hz) > kResonanceMoved * from_Hz;
+  }
+
   /// All starts at once: some trials have several times as many as others.
-  void settle(std::vector<PlacedStart> starts, const std::function<void(std::size_t)>& on_done) {
+  std::vector<InnovationStage> settle(std::vector<PlacedStart> starts,
+                                      const std::function<void(std::size_t)>& on_done) {
     std::vector<InnovationStage> reached(starts.size());
     std::vector<std::size_t> left(trials_.size(), 0);
     for (const PlacedStart& start : starts) ++left[start.trial];
@@ -120,22 +179,26 @@ class SettledTrials {
       const std::lock_guard lock(counting);
       if (--left[start.trial] == 0 && on_done && !plain_.cancelled()) on_done(start.trial);
     });
-    for (std::size_t k = 0; k < starts.size(); ++k)
-      take_better(starts[k].trial, std::move(reached[k]));
+    for (std::size_t k = 0; k < starts.size(); ++k) take_better(starts[k].trial, reached[k]);
+    return reached;
   }
 
   /// Takes a stage where it is better than the trial's best. An optimum beyond the effect's range,
   /// which no search takes, hides none within it.
   void take_better(std::size_t i, InnovationStage one) {
     InnovationStage& best = best_[i];
-    const std::size_t before = stage_.model.fitted.parameters.size();
     bool better = one.minus_two_log < best.minus_two_log;
     if (std::isfinite(best.minus_two_log) && std::isfinite(one.minus_two_log) &&
         !trials_[i].elsewhere.empty()) {
-      const bool out = leaves_its_range(one.model.fitted, before);
-      if (out != leaves_its_range(best.model.fitted, before)) better = !out;
+      const bool out = is_out_of_range(one);
+      if (out != is_out_of_range(best)) better = !out;
     }
     if (better) best = std::move(one);
+  }
+
+  [[nodiscard]] bool is_out_of_range(const InnovationStage& one) const {
+    return std::isfinite(one.minus_two_log) &&
+           leaves_its_range(one.model.fitted, stage_.model.fitted.parameters.size());
   }
 
   [[nodiscard]] double hopeless_by(double minus_two_log, double share = kHopefulShare) const {
