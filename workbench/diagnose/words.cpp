@@ -182,11 +182,11 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
 /// What the predictor that judged the models leaves: an error of simulations, which holds the
 /// disturbance, hardly shows what is missing.
 std::string prediction_words(const selection::Diagnosis& d) {
-  if (!d.by_innovations || !std::isfinite(d.prediction_after_m)) return "";
+  if (d.missing.empty() || !d.changing.empty() || !std::isfinite(d.prediction_after_m)) return "";
   return " One sample ahead, predictions are off by " +
          config::units::length_words(d.prediction_before_m) + " without and by " +
          config::units::length_words(d.prediction_after_m) + " with " +
-         (d.missing.size() > 1 ? "them." : "it.");
+         config::schema::listed(d.missing) + ".";
 }
 
 std::string fall_words(const selection::Diagnosis& d) {
@@ -198,9 +198,11 @@ std::string fall_words(const selection::Diagnosis& d) {
   const std::string with = d.verdict == selection::Verdict::undetermined
                                ? "With " + config::schema::listed(d.missing) + ", the"
                                : "The";
-  return with + " held-out error " + (d.rms_after_m < d.rms_before_m ? "falls" : "goes") +
-         " from " + config::units::length_words(d.rms_before_m) + " to " +
-         config::units::length_words(d.rms_after_m) +
+  const std::string before = config::units::length_words(d.rms_before_m);
+  const std::string after = config::units::length_words(d.rms_after_m);
+  const std::string course = d.rms_after_m < d.rms_before_m ? "falls" : "goes";
+  return with + " held-out error " +
+         (before == after ? "stays at " + after : course + " from " + before + " to " + after) +
          (d.rms_after_m < d.floor_m() ? ", within " + floor_name(d) + ", "
                                       : "; " + floor_name(d) + " is ") +
          config::units::length_words(d.floor_m()) + "." + prediction_words(d);

@@ -41,8 +41,9 @@ std::string line_words(const selection::DisturbanceLine& line) {
   std::vector<std::string> kinds{kind_words(line.as, line.amplitude)};
   for (const selection::LineRival& rival : line.rivals)
     kinds.push_back(kind_words(rival.as, rival.amplitude));
-  return fmt::format("{} at {:.2f} Hz", config::schema::listed(kinds, "or"), line.frequency_Hz) +
-         (line.rivals.empty() ? "" : ", which the record does not tell apart");
+  if (line.rivals.empty()) return fmt::format("{} at {:.2f} Hz", kinds.front(), line.frequency_Hz);
+  return fmt::format("at {:.2f} Hz {} (the record does not tell which)", line.frequency_Hz,
+                     config::schema::listed(kinds, "or"));
 }
 
 }  // namespace

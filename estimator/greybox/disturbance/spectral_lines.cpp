@@ -129,6 +129,7 @@ MatrixXd response(const Linearisation& model, const Dataset& record, const Innov
   std::array<Row, kMostStates> z;  // states, then F at `count`
   std::array<Row, kMostStates> next;
   z.fill(Row::Zero());
+  next.fill(Row::Zero());
   std::size_t segment = 0;
   for (std::size_t row = 0; row < record.size(); ++row) {
     if (segment < record.starts.size() && record.starts[segment] == row) {
@@ -152,7 +153,7 @@ MatrixXd response(const Linearisation& model, const Dataset& record, const Innov
       next[static_cast<std::size_t>(i)] = sum;
     }
     next[static_cast<std::size_t>(count)] = gains.decay * force;
-    z = next;
+    z.swap(next);
   }
   return result;
 }

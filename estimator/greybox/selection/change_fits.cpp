@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_trials.h"
@@ -101,17 +102,22 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
   };
   in_parallel(near.size(), threads, [&](std::size_t k) { settle_one(near[k]); });
   // with noise models of their own the near ones may end behind others
-  const auto likeliest = [&] {
-    return static_cast<std::size_t>(
-        std::min_element(stages.begin(), stages.end(),
-                         [](const auto& a, const auto& b) { return penalised(a) < penalised(b); }) -
-        stages.begin());
-  };
-  for (std::size_t i = likeliest(); has_noise_model[i] == 0; i = likeliest()) {
-    if (!std::isfinite(stages[i].minus_two_log)) return {};
-    settle_one(i);
+  for (bool more = true; more;) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t next = stages.size();
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      if (has_noise_model[i] != 0) least = std::min(least, penalised(stages[i]));
+      const bool nearer = next == stages.size() || penalised(stages[i]) < penalised(stages[next]);
+      if (has_noise_model[i] == 0 && nearer) next = i;
+    }
+    more = next < stages.size() && penalised(stages[next]) < least + 2.0 * kEvidence_nats;
+    if (more) settle_one(next);
   }
-  return std::isfinite(stages[likeliest()].minus_two_log) ? stages : std::vector<InnovationStage>{};
+  if (std::none_of(stages.begin(), stages.end(),
+                   [](const auto& one) { return std::isfinite(one.minus_two_log); })) {
+    return {};
+  }
+  return stages;
 }
 
 InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,

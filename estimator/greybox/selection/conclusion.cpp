@@ -314,6 +314,21 @@ std::vector<std::string> effects_with_rivals(const InnovationSearch& innovations
   return effects;
 }
 
+/// Without the effects the model has the lines that were found beside them: what these gain is not
+/// what is missing.
+void compare_predictions(const SearchContext& search, const InnovationSearch& innovations,
+                         Diagnosis& result) {
+  if (innovations.final.model.added.empty()) return;
+  InnovationStage before = innovations.before;
+  if (!innovations.final.noise.lines.empty()) {
+    before = settled(without_holdouts(search), before.model, innovations.final.noise, 1,
+                     wide(search.options.threads));
+  }
+  if (!std::isfinite(before.minus_two_log)) return;
+  result.prediction_before_m = prediction_rms_m(before);
+  result.prediction_after_m = prediction_rms_m(innovations.final);
+}
+
 }  // namespace
 
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
@@ -348,8 +363,6 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;
-  result.prediction_before_m = prediction_rms_m(innovations.before);
-  result.prediction_after_m = prediction_rms_m(innovations.final);
   if (physics) {
     // the noise model passes for what is missing: it must not weigh what the values have to explain
     result.disturbance.reset();
@@ -367,6 +380,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   } else {
     if (result.disturbance && !context.cancelled())
       add_line_rivals(without_holdouts(search), innovations.final, *result.disturbance);
+    if (!context.cancelled()) compare_predictions(search, innovations, result);
     take_parameters(innovations.final, result);
     keep_file_where_better(search, result);
   }

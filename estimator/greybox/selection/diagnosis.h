@@ -83,8 +83,9 @@ struct Diagnosis {
   Excitation excitation;  ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
-  /// By innovations: RMS error of predictions by one sample, of the model without effects and of
-  /// the better one, each with its own noise model.
+  /// RMS error of predictions by one sample, of the model without the effects added and of the
+  /// better one, each with its own noise model and the lines found; NaN where not judged by
+  /// innovations, or where physics is missing.
   double prediction_before_m = std::numeric_limits<double>::quiet_NaN();
   double prediction_after_m = std::numeric_limits<double>::quiet_NaN();
   bool loses_motion = false;  ///< loses_motion() of the final model

@@ -13,6 +13,8 @@ using Eigen::Index;
 
 /// A disturbance of less than this share of the sensor's noise, RMS, is none.
 constexpr double kSeen = 0.3;
+/// Lag of a line of another kind that noise model and parameters may make up for.
+constexpr double kWorthPolishing_nats = 30.0;
 /// Share of the random part's square above which it is the walk of the reading.
 constexpr double kMostly = 0.5;
 
@@ -128,8 +130,13 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
 void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
                      Disturbance& disturbance) {
   for (std::size_t i = 0; i < disturbance.lines.size(); ++i) {
-    for (const InnovationStage& other : at_other_sites(plain, final, i)) {
-      if (!(other.minus_two_log < final.minus_two_log + 2.0 * kRivals_nats)) continue;
+    for (InnovationStage& other : at_other_sites(plain, final, i)) {
+      const double lag = other.minus_two_log - final.minus_two_log;
+      if (!(lag < 2.0 * kWorthPolishing_nats)) continue;
+      if (lag >= 2.0 * kRivals_nats) {
+        other = settled(plain, other.model, other.noise, kMostTurns, wide(plain.options.threads));
+        if (!(other.minus_two_log < final.minus_two_log + 2.0 * kRivals_nats)) continue;
+      }
       double sum = 0.0;
       double counted = 0.0;
       for (std::size_t r = 0; r < other.noise.waves[i].size(); ++r) {

@@ -13,7 +13,7 @@ namespace estimator::greybox::selection {
 /// A kind of line that explains the record about as well in another's place.
 struct LineRival {
   std::string as;
-  double amplitude = 0.0;
+  double amplitude = 0.0;  ///< N, Pa, m; m/s
 };
 
 struct DisturbanceLine {

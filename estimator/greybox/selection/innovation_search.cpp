@@ -241,7 +241,12 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     extend_fully();
   }
   // at the end, so that it favours no second mass over what is exchanged for it
+  const double found = stage.minus_two_log;
   reconsider_second_mass(context, stage);
+  if (stage.minus_two_log < found) {
+    search.rivals.clear();
+    search.without = eliminate(context, stage, evidence_nats());
+  }
   search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);
   search.final = std::move(stage);

@@ -21,8 +21,8 @@ struct LikeliestStart {
 
 /// The likeliest of `starts` (not empty), each linearised and with a noise model searched from
 /// `noise`, and where a second mass swings with the random force on either mass; the first where
-/// none is. Of many starts those are followed that a first look at their noise models finds
-/// likelier than -2 log L = `hopeless_minus_two_log`.
+/// none is. Of more than three candidates those are followed that a first look at their noise
+/// models finds likelier than -2 log L = `hopeless_minus_two_log`.
 [[nodiscard]] LikeliestStart likeliest_start(
     const SearchContext& plain, std::vector<ParameterSubset> starts,
     const disturbance::NoiseModel& noise, unsigned threads,

@@ -35,6 +35,7 @@ std::optional<RemainingDisturbance> remaining_disturbance(const plant_sim::Model
   const double sensor_m = context.problem.data.noise_floor_m;
   const double rms_m = rms(file.fitted.residual_m, context.problem.data.all_mask);
   if (!found || !noise_is_credible(context, search, sensor_m, found, rms_m)) return {};
+  add_line_rivals(context, search.final, *found);
   limit(*found, rms_m);
   const double floor_m = std::hypot(sensor_m, found->rms_m);
   return RemainingDisturbance{std::move(*found), floor_m};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_rivals.h"
+#include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 
@@ -79,7 +80,8 @@ void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) 
   if (!std::isfinite(fitted.value("second_mass.resonance_Hz")) || plain.cancelled()) return;
   const SimulationWidth width = wide(plain.options.threads);
   const auto take = [&](InnovationStage other) {
-    if (penalised(other) < penalised(stage)) stage = std::move(other);
+    const bool stays = effect_out_of_range(other).empty() || !effect_out_of_range(stage).empty();
+    if (stays && penalised(other) < penalised(stage)) stage = std::move(other);
   };
   take(settled(plain, stage.model, with_force_on_other_mass(stage), kMostTurns, width));
   std::vector<ParameterSubset> shares = mass_share_starts(plain, stage.model);

@@ -19,8 +19,9 @@ namespace estimator::greybox::selection {
     const SearchContext& plain, const InnovationStage& stage);
 
 /// Moves the random force to the other of two masses, and tries other shares of the mass, noise
-/// model and parameters converged, where that is likelier: parameters found with one place favour
-/// it, and a small share that damps shakes the sensor nearly as a large one that hardly does.
+/// model and parameters converged, where that is likelier within the effects' ranges: parameters
+/// found with one place favour it, and a small share with much damping rings nearly as a large one
+/// with little.
 void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage);
 
 struct LineInstead {

@@ -14,11 +14,12 @@ namespace {
 
 using disturbance::NoiseModel;
 
-/// Lag in -2 log L behind the stage at which a first look at a start elsewhere leaves hope, and the
-/// share of what the best trial gains that it has to gain: of a line's less, which is exact at
-/// once.
+/// A start elsewhere is dropped where a first look finds it this far, in -2 log L, behind the
+/// stage.
 constexpr double kFirstLook = 600.0;
+/// The same where it gains less than this share of what the best effect gains beside the stage.
 constexpr double kHopefulShare = 0.5;
+/// The share of what the best line gains: a line is exact at once, a start has yet to be fitted.
 constexpr double kHopefulShareOfLine = 0.3;
 /// Share of a resonance by which a fit moves it when the starts about it are to be tried again.
 constexpr double kResonanceMoved = 0.03;
@@ -97,7 +98,7 @@ class SettledTrials {
       const InnovationStage* const best = best_of(i, starts_of, reached);
       if (best == nullptr) continue;
       for (const std::vector<ParameterSubset>& side : trials_[i].elsewhere) {
-        // its shares and dampings were judged at another resonance
+        // shares and dampings of the side were judged at another resonance
         ModelStage there = with_values_of(side.front(), best->model.fitted);
         const bool out = is_out_of_range(*best);
         if (out || has_moved(side.front(), there.fitted))
@@ -163,7 +164,7 @@ class SettledTrials {
     return std::abs(to.value(kResonance) - from_Hz) > kResonanceMoved * from_Hz;
   }
 
-  /// All starts at once: some trials have several times as many as others.
+  /// Settles all starts at once, as some trials have several times as many as others.
   std::vector<InnovationStage> settle(std::vector<PlacedStart> starts,
                                       const std::function<void(std::size_t)>& on_done) {
     std::vector<InnovationStage> reached(starts.size());
@@ -209,6 +210,7 @@ class SettledTrials {
   [[nodiscard]] double hopeless_by_best() const {
     double hopeless = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (is_out_of_range(best_[i])) continue;  // no search takes it
       const double share = is_line(trials_[i]) ? kHopefulShareOfLine : kHopefulShare;
       hopeless = std::min(hopeless, hopeless_by(best_[i].minus_two_log, share));
     }

@@ -14,8 +14,8 @@ namespace estimator::greybox::selection {
 
 /// The best of each trial's starts beside `stage`; unfinished for a trial of which no start
 /// promises anything. Starts elsewhere are followed where they come near the best trial and near a
-/// stage that another search has found, of this -2 log L. `on_done` is called as trials end, by one
-/// thread at a time.
+/// stage that another search has found, of this -2 log L. `on_done` is called as the starts of a
+/// trial end, before those elsewhere, by one thread at a time.
 [[nodiscard]] std::vector<InnovationStage> settled(
     const SearchContext& plain, const InnovationStage& stage,
     std::span<const InnovationTrial> trials,
