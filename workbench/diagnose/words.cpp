@@ -179,8 +179,8 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
   return what + ": a disturbance explains the samples better.";
 }
 
-/// What the predictor that judged the models leaves: an error of simulations, which holds the
-/// disturbance, hardly shows what is missing.
+/// The error that the predictor leaves which judged the models: that of simulations holds the
+/// disturbance and hardly shows what is missing.
 std::string prediction_words(const selection::Diagnosis& d) {
   if (d.missing.empty() || !d.changing.empty() || !std::isfinite(d.prediction_after_m)) return "";
   return " One sample ahead, predictions are off by " +

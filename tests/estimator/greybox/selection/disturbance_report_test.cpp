@@ -103,7 +103,7 @@ TEST(LineRivals, AForceOnAFreeMassMayBeASensorThatVibrates) {
   EXPECT_NEAR(sensor_m, 3.0 / (100.0 * w_per_s * w_per_s), 0.05e-6);
 }
 
-// What a supply pressure moves the rod by turns with the valve's opening.
+// The motion that a supply pressure causes turns with the valve's opening.
 TEST(LineRivals, APulsationOfTheSupplyHasNone) {
   const LinesOf rig = lines_of(diagnose_test::thesis(),
                                "motion=multisine,length_s=10,plant=printed,"
