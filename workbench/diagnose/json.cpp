@@ -85,9 +85,9 @@ ordered_json changing_of(const selection::Diagnosis& d) {
 
 /// Null where simulations alone were judged.
 ordered_json prediction_of(const selection::Diagnosis& d) {
-  if (!std::isfinite(d.prediction_after_m)) return nullptr;
-  return {{"rms_before_m", number_or_null(d.prediction_before_m)},
-          {"rms_after_m", number_or_null(d.prediction_after_m)}};
+  if (!d.prediction) return nullptr;
+  return {{"rms_before_m", number_or_null(d.prediction->before_m)},
+          {"rms_after_m", number_or_null(d.prediction->after_m)}};
 }
 
 ordered_json numbers_of(const std::vector<double>& values) {

@@ -182,10 +182,10 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
 /// The error that the predictor leaves which judged the models: that of simulations holds the
 /// disturbance and hardly shows what is missing.
 std::string prediction_words(const selection::Diagnosis& d) {
-  if (d.missing.empty() || !d.changing.empty() || !std::isfinite(d.prediction_after_m)) return "";
+  if (d.missing.empty() || !d.changing.empty() || !d.prediction) return "";
   return " One sample ahead, predictions are off by " +
-         config::units::length_words(d.prediction_before_m) + " without and by " +
-         config::units::length_words(d.prediction_after_m) + " with " +
+         config::units::length_words(d.prediction->before_m) + " without and by " +
+         config::units::length_words(d.prediction->after_m) + " with " +
          config::schema::listed(d.missing) + ".";
 }
 

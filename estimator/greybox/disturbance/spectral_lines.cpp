@@ -124,7 +124,7 @@ MatrixXd response(const Linearisation& model, const Dataset& record, const Innov
                   LineSite site, Inputs inputs) {
   using Row = Eigen::Matrix<double, 1, Count>;
   const auto count = static_cast<Index>(model.states.size());  // without F
-  const Index corrected = gains.gain.rows() - 1;               // of them
+  const Index corrected = gains.gain.rows() - 1;               // states that the gains correct
   MatrixXd result(static_cast<Index>(record.size()), Count);
   std::array<Row, kMostStates> z;  // states, then F at `count`
   std::array<Row, kMostStates> next;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_trials.h"
@@ -85,33 +84,25 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
   std::vector<InnovationStage> stages(proposals.size());
   in_parallel(proposals.size(), threads,
               [&](std::size_t i) { stages[i] = tried(proposals[i], stage, SimulationWidth{}); });
-  double best = penalised(stage);
-  for (const InnovationStage& trial : stages) best = std::min(best, penalised(trial));
-  const double behind_nats =
-      std::max(kWorthSettling_nats, kWorthSettling * 0.5 * (penalised(stage) - best));
-  std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    if (penalised(stages[i]) < best + 2.0 * behind_nats) near.push_back(i);
-  }
-  if (stages.empty()) return {};
   std::vector<char> has_noise_model(stages.size(), 0);
-  const auto settle_one = [&](std::size_t i) {
-    stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise, 1,
-                        SimulationWidth{});
-    has_noise_model[i] = 1;
-  };
-  in_parallel(near.size(), threads, [&](std::size_t k) { settle_one(near[k]); });
-  // with noise models of their own the near ones may end behind others
+  // with noise models of their own those that seemed the best may end behind others
   for (bool more = true; more;) {
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t next = stages.size();
+    double best = penalised(stage);
+    for (const InnovationStage& trial : stages) best = std::min(best, penalised(trial));
+    const double behind_nats =
+        std::max(kWorthSettling_nats, kWorthSettling * 0.5 * (penalised(stage) - best));
+    std::vector<std::size_t> near;
     for (std::size_t i = 0; i < stages.size(); ++i) {
-      if (has_noise_model[i] != 0) least = std::min(least, penalised(stages[i]));
-      const bool nearer = next == stages.size() || penalised(stages[i]) < penalised(stages[next]);
-      if (has_noise_model[i] == 0 && nearer) next = i;
+      if (has_noise_model[i] == 0 && penalised(stages[i]) < best + 2.0 * behind_nats)
+        near.push_back(i);
     }
-    more = next < stages.size() && penalised(stages[next]) < least + 2.0 * kEvidence_nats;
-    if (more) settle_one(next);
+    in_parallel(near.size(), threads, [&](std::size_t k) {
+      const std::size_t i = near[k];
+      stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise, 1,
+                          SimulationWidth{});
+      has_noise_model[i] = 1;
+    });
+    more = !near.empty();
   }
   if (std::none_of(stages.begin(), stages.end(),
                    [](const auto& one) { return std::isfinite(one.minus_two_log); })) {

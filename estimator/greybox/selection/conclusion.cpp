@@ -10,6 +10,7 @@
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/prediction_error.h"
 #include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/parallel.h"
 
@@ -314,21 +315,6 @@ std::vector<std::string> effects_with_rivals(const InnovationSearch& innovations
   return effects;
 }
 
-/// Without the effects the model has the lines that were found beside them: what these gain is not
-/// what is missing.
-void compare_predictions(const SearchContext& search, const InnovationSearch& innovations,
-                         Diagnosis& result) {
-  if (innovations.final.model.added.empty()) return;
-  InnovationStage before = innovations.before;
-  if (!innovations.final.noise.lines.empty()) {
-    before = settled(without_holdouts(search), before.model, innovations.final.noise, 1,
-                     wide(search.options.threads));
-  }
-  if (!std::isfinite(before.minus_two_log)) return;
-  result.prediction_before_m = prediction_rms_m(before);
-  result.prediction_after_m = prediction_rms_m(innovations.final);
-}
-
 }  // namespace
 
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
@@ -380,7 +366,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   } else {
     if (result.disturbance && !context.cancelled())
       add_line_rivals(without_holdouts(search), innovations.final, *result.disturbance);
-    if (!context.cancelled()) compare_predictions(search, innovations, result);
+    if (!context.cancelled()) result.prediction = prediction_errors(search, innovations);
     take_parameters(innovations.final, result);
     keep_file_where_better(search, result);
   }

@@ -13,6 +13,7 @@
 #include "estimator/greybox/selection/law_dictionary.h"
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/parameter_change.h"
+#include "estimator/greybox/selection/prediction_error.h"
 #include "estimator/greybox/selection/record_checks.h"
 #include "estimator/greybox/selection/repeated_motion.h"
 #include "estimator/greybox/selection/structure_search.h"
@@ -83,11 +84,8 @@ struct Diagnosis {
   Excitation excitation;  ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
-  /// RMS error of predictions by one sample, of the model without the effects added and of the
-  /// better one, each with its own noise model and the lines found; NaN where not judged by
-  /// innovations, or where physics is missing.
-  double prediction_before_m = std::numeric_limits<double>::quiet_NaN();
-  double prediction_after_m = std::numeric_limits<double>::quiet_NaN();
+  /// Where the record was judged by innovations and no physics is missing beyond what was added.
+  std::optional<PredictionErrors> prediction;
   bool loses_motion = false;  ///< loses_motion() of the final model
   /// By innovations: what the absence of each effect would cost, and the gain of the best curve
   /// over a variable of the motion.

@@ -13,8 +13,6 @@ using Eigen::Index;
 
 /// A disturbance of less than this share of the sensor's noise, RMS, is none.
 constexpr double kSeen = 0.3;
-/// Lag of a line of another kind that noise model and parameters may make up for.
-constexpr double kWorthPolishing_nats = 30.0;
 /// Share of the random part's square above which it is the walk of the reading.
 constexpr double kMostly = 0.5;
 

@@ -19,10 +19,8 @@ constexpr std::size_t kLargestRivalGroup = 3;
 constexpr std::size_t kRivalFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
-/// Lag within which a rival with a noise model of its own is polished before it is dismissed, and
-/// the share of what the effect gains that it may be more: parameters that another model has bent
-/// come back together with the noise model, turn by turn.
-constexpr double kWorthPolishing_nats = 30.0;
+/// Share of what the effect gains by which the lag of a rival that is polished may be more:
+/// parameters that another model has bent come back together with the noise model, turn by turn.
 constexpr double kWorthPolishing = 0.1;
 
 ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {
@@ -103,7 +101,8 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
            std::find(added.begin(), added.end(), rival.candidate.effect) != added.end();
   });
   rivals.resize(std::min(rivals.size(), kRivalFinalists));
-  std::vector<InnovationStage> found = settled(plain, without, rivals, final.minus_two_log);
+  std::vector<InnovationStage> found =
+      settle_trials(plain, without, rivals, {}, final.minus_two_log);
   const unsigned threads = plain.options.threads;
   const SimulationWidth width = rivals.size() == 1 ? wide(threads) : SimulationWidth{};
   in_parallel(rivals.size(), threads, [&](std::size_t i) {

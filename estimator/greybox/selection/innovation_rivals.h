@@ -10,6 +10,8 @@ namespace estimator::greybox::selection {
 
 /// Rivals within this of the best explain the record about as well.
 inline constexpr double kRivals_nats = 8.0;
+/// Lag within which a rival with a noise model of its own is polished before it is dismissed.
+inline constexpr double kWorthPolishing_nats = 30.0;
 
 /// An effect found, and others that explain the record about as well in its place.
 struct InnovationRivals {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -22,7 +21,6 @@ constexpr std::size_t kMostLines = 4;
 /// Candidates of a round that get a noise model of their own.
 constexpr std::size_t kRoundFinalists = 3;
 constexpr std::size_t kMostLineFinalists = 2;
-constexpr double kNoneFound = std::numeric_limits<double>::infinity();
 /// Lead of the likeliest candidate that another may make up for when its noise model and parameters
 /// have converged together.
 constexpr double kContends_nats = 30.0;
@@ -143,8 +141,8 @@ class RoundTrials {
       trial.starts = {trials_[i].starts.back()};
       trial.elsewhere.clear();
     }
-    std::vector<InnovationStage> reached = settled(
-        plain_, stage_, unknown, kNoneFound, [&](std::size_t k) { report_progress(chosen[k]); });
+    std::vector<InnovationStage> reached =
+        settle_trials(plain_, stage_, unknown, [&](std::size_t k) { report_progress(chosen[k]); });
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const std::size_t i = chosen[k];
       if (!(reached[k].minus_two_log < stages_[i].minus_two_log)) continue;

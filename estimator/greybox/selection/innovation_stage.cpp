@@ -227,23 +227,6 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
   return std::move(anew.stage);
 }
 
-double prediction_rms_m(const InnovationStage& stage) {
-  const FitDataset& data = stage.context.problem.data;
-  double sum_m2 = 0.0;
-  double counted = 0.0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const Dataset& record = data.records[r];
-    const Eigen::VectorXd& scale = record.innovations->scale;
-    const auto from = static_cast<Eigen::Index>(data.starts[r]);
-    for (Eigen::Index k = 0; k < scale.size(); ++k) {
-      if (record.valid[static_cast<std::size_t>(k)] == 0) continue;
-      sum_m2 += std::pow(stage.model.fitted.residual_m[from + k] / scale[k], 2);
-      counted += 1.0;
-    }
-  }
-  return std::sqrt(sum_m2 / std::max(counted, 1.0));
-}
-
 FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {
   DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
   FitSummary result = fitted;

@@ -44,9 +44,6 @@ inline constexpr int kMostTurns = 5;
                                       const disturbance::NoiseModel& start, int turns,
                                       SimulationWidth width);
 
-/// RMS error of the predictions of a finished stage by one sample, m; its lines are predicted too.
-[[nodiscard]] double prediction_rms_m(const InnovationStage& stage);
-
 /// A fit's parameters in a simulation with the weak observer, without Jacobian.
 [[nodiscard]] FitSummary simulated(const SearchContext& context, const FitSummary& fitted);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
+#include "estimator/greybox/sensor_place.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -27,7 +28,6 @@ constexpr double kWorthSimulating = 0.97;
 constexpr int kTrialStartIterations = 10;
 constexpr double kTrialStartTolerance = 2e-3;
 constexpr double kSimulationTolerance = 1e-5;
-constexpr const char* kSensorRatio = "second_mass.sensor_ratio";
 
 ModelStage with_effect(const ModelStage& stage, const std::string& effect, FitSummary fitted) {
   ModelStage next{stage.added, std::move(fitted)};
@@ -65,7 +65,7 @@ double squares_and_priors(const InnovationStage& stage) {
 
 NoiseModel with_force_on_other_mass(const InnovationStage& stage) {
   NoiseModel noise = stage.noise;
-  const bool behind_spring = stage.model.fitted.value(kSensorRatio) > 0.5;
+  const bool behind_spring = stage.model.fitted.value(kSecondMassSensorRatio) > 0.5;
   const bool on_second = noise.force_place < 0.0 ? behind_spring : noise.force_place > 0.5;
   noise.force_place = on_second ? 0.0 : 1.0;
   return noise;
@@ -110,7 +110,7 @@ namespace {
 
 bool has_sensor_place(const ParameterSubset& start) {
   return std::any_of(start.parameters.begin(), start.parameters.end(),
-                     [](const auto& p) { return p.name == kSensorRatio; });
+                     [](const auto& p) { return p.name == kSecondMassSensorRatio; });
 }
 
 /// A resonance as it was screened on either side of the spring, the plant as the stage and as the

@@ -102,10 +102,17 @@ LikeliestStart likeliest_start(const SearchContext& plain, std::vector<Parameter
   return best;
 }
 
+ModelStage model_at(std::vector<std::string> added, ParameterSubset start) {
+  ModelStage model{std::move(added), {}};
+  model.fitted.parameters = std::move(start.parameters);
+  model.fitted.theta = std::move(start.start);
+  return model;
+}
+
 std::vector<ParameterSubset> mass_share_starts(const SearchContext& context,
                                                const ModelStage& model) {
   const std::vector<FreeParameter>& parameters = model.fitted.parameters;
-  if (!std::isfinite(model.fitted.value("second_mass.resonance_Hz"))) return {};
+  if (!std::isfinite(model.fitted.value(kSecondMassResonance))) return {};
   std::vector<ParameterSubset> starts;
   for (const Eigen::VectorXd& values : {model.fitted.theta, with_file_values(context, model)}) {
     for (const double share : kTriedShares) {
@@ -115,7 +122,7 @@ std::vector<ParameterSubset> mass_share_starts(const SearchContext& context,
         double& theta = with.start[static_cast<Eigen::Index>(i)];
         if (p.name == "second_mass.mass_ratio") theta = p.to_theta(share);
         if (p.name == "second_mass.damping_ratio") theta = p.to_theta(kTriedDamping_ratio);
-        if (p.name == "second_mass.sensor_ratio") theta = p.to_theta(1.0);
+        if (p.name == kSecondMassSensorRatio) theta = p.to_theta(1.0);
         theta = std::clamp(theta, p.lower, p.upper);
       }
     }

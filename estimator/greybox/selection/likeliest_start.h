@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "estimator/greybox/disturbance/noise_model.h"
@@ -27,6 +28,9 @@ struct LikeliestStart {
     const SearchContext& plain, std::vector<ParameterSubset> starts,
     const disturbance::NoiseModel& noise, unsigned threads,
     double hopeless_minus_two_log = std::numeric_limits<double>::infinity());
+
+/// The model with these effects at a start, not fitted.
+[[nodiscard]] ModelStage model_at(std::vector<std::string> added, ParameterSubset start);
 
 /// Models with the resonance of `model`: shares of the mass and a damping that structures have, the
 /// sensor, where it is free, on the second mass, the plant as the model and as the file have it;

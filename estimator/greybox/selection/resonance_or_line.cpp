@@ -11,6 +11,7 @@
 #include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
+#include "estimator/greybox/sensor_place.h"
 
 namespace estimator::greybox::selection {
 
@@ -77,7 +78,7 @@ std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& p
 
 void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) {
   const FitSummary& fitted = stage.model.fitted;
-  if (!std::isfinite(fitted.value("second_mass.resonance_Hz")) || plain.cancelled()) return;
+  if (!std::isfinite(fitted.value(kSecondMassResonance)) || plain.cancelled()) return;
   const SimulationWidth width = wide(plain.options.threads);
   const auto take = [&](InnovationStage other) {
     const bool stays = effect_out_of_range(other).empty() || !effect_out_of_range(stage).empty();
@@ -89,10 +90,8 @@ void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) 
   LikeliestStart other =
       likeliest_start(plain, std::move(shares), stage.noise, plain.options.threads);
   if (!std::isfinite(other.minus_two_log)) return;
-  ModelStage start{stage.model.added, {}};
-  start.fitted.parameters = std::move(other.start.parameters);
-  start.fitted.theta = std::move(other.start.start);
-  take(settled(plain, std::move(start), other.noise, kMostTurns, width));
+  take(settled(plain, model_at(stage.model.added, std::move(other.start)), other.noise, kMostTurns,
+               width));
 }
 
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {

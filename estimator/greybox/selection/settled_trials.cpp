@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
+#include "estimator/greybox/sensor_place.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -23,7 +24,6 @@ constexpr double kHopefulShare = 0.5;
 constexpr double kHopefulShareOfLine = 0.3;
 /// Share of a resonance by which a fit moves it when the starts about it are to be tried again.
 constexpr double kResonanceMoved = 0.03;
-constexpr const char* kResonance = "second_mass.resonance_Hz";
 
 /// The lines at the sites where the model makes them likeliest: one that lacks an effect may have
 /// put them where they make up for it.
@@ -109,8 +109,8 @@ class SettledTrials {
     in_parallel(trials_.size(), plain_.options.threads, [&](std::size_t i) {
       if (trials_[i].elsewhere.empty() || !(best_[i].minus_two_log < hopeless)) return;
       // where the force acts shows once the resonance is found
-      take_better(i, selection::settled(plain_, best_[i].model, with_force_on_other_mass(best_[i]),
-                                        1, SimulationWidth{}));
+      take_better(i, settled(plain_, best_[i].model, with_force_on_other_mass(best_[i]), 1,
+                             SimulationWidth{}));
     });
   }
 
@@ -122,10 +122,9 @@ class SettledTrials {
     LikeliestStart likeliest =
         likeliest_start(plain_, side, noise, plain_.options.threads, hopeless);
     if (!(likeliest.minus_two_log < stage_.minus_two_log)) return;
-    ModelStage start{trials_[trial].starts.front().added, {}};
-    start.fitted.parameters = std::move(likeliest.start.parameters);
-    start.fitted.theta = std::move(likeliest.start.start);
-    starts.push_back({trial, std::move(start), std::move(likeliest.noise)});
+    starts.push_back({trial,
+                      model_at(trials_[trial].starts.front().added, std::move(likeliest.start)),
+                      std::move(likeliest.noise)});
   }
 
   /// The likeliest stage of a trial, in its range or not; null: none.
@@ -160,8 +159,8 @@ class SettledTrials {
     FitSummary from;
     from.parameters = start.parameters;
     from.theta = start.start;
-    const double from_Hz = from.value(kResonance);
-    return std::abs(to.value(kResonance) - from_Hz) > kResonanceMoved * from_Hz;
+    const double from_Hz = from.value(kSecondMassResonance);
+    return std::abs(to.value(kSecondMassResonance) - from_Hz) > kResonanceMoved * from_Hz;
   }
 
   /// Settles all starts at once, as some trials have several times as many as others.
@@ -175,8 +174,7 @@ class SettledTrials {
       PlacedStart& start = starts[k];
       if (!is_line(trials_[start.trial]))
         start.noise = with_likelier_sites(plain_, start.model, std::move(start.noise));
-      reached[k] =
-          selection::settled(plain_, std::move(start.model), start.noise, 1, SimulationWidth{});
+      reached[k] = settled(plain_, std::move(start.model), start.noise, 1, SimulationWidth{});
       const std::lock_guard lock(counting);
       if (--left[start.trial] == 0 && on_done && !plain_.cancelled()) on_done(start.trial);
     });
@@ -225,10 +223,10 @@ class SettledTrials {
 
 }  // namespace
 
-std::vector<InnovationStage> settled(const SearchContext& plain, const InnovationStage& stage,
-                                     std::span<const InnovationTrial> trials,
-                                     double found_minus_two_log,
-                                     const std::function<void(std::size_t trial)>& on_done) {
+std::vector<InnovationStage> settle_trials(const SearchContext& plain, const InnovationStage& stage,
+                                           std::span<const InnovationTrial> trials,
+                                           const std::function<void(std::size_t trial)>& on_done,
+                                           double found_minus_two_log) {
   SettledTrials all(plain, stage, trials);
   all.settle_starts(on_done);
   all.settle_elsewhere(found_minus_two_log);

@@ -16,10 +16,10 @@ namespace estimator::greybox::selection {
 /// promises anything. Starts elsewhere are followed where they come near the best trial and near a
 /// stage that another search has found, of this -2 log L. `on_done` is called as the starts of a
 /// trial end, before those elsewhere, by one thread at a time.
-[[nodiscard]] std::vector<InnovationStage> settled(
+[[nodiscard]] std::vector<InnovationStage> settle_trials(
     const SearchContext& plain, const InnovationStage& stage,
     std::span<const InnovationTrial> trials,
-    double found_minus_two_log = std::numeric_limits<double>::infinity(),
-    const std::function<void(std::size_t trial)>& on_done = {});
+    const std::function<void(std::size_t trial)>& on_done = {},
+    double found_minus_two_log = std::numeric_limits<double>::infinity());
 
 }  // namespace estimator::greybox::selection

@@ -9,6 +9,7 @@
 
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/prediction_error.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"

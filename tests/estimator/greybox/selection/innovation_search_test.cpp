@@ -127,7 +127,8 @@ TEST(InnovationSearch, ALineTakesThePlaceOfAResonanceThatDoesNotDamp) {
       settled(context, first_stage(context), {}, kMostTurns, wide(context.options.threads));
   EXPECT_FALSE(line_for_resonance(context, first));
   InnovationStage with = first;
-  for (InnovationStage& one : settled(context, first, effect_trials(first))) with = std::move(one);
+  for (InnovationStage& one : settle_trials(context, first, effect_trials(first)))
+    with = std::move(one);
   ASSERT_THAT(with.model.added, ElementsAre("second_mass"));
   const std::optional<LineInstead> instead = line_for_resonance(context, with);
   ASSERT_TRUE(instead);
