@@ -34,19 +34,7 @@ constexpr double kMostDisturbance_units = 1e8;
 /// Largest step of a line's frequency, in bins of the longest record.
 constexpr double kMostStep_bins = 0.25;
 
-/// Logarithms of the disturbance's intensity, its standard deviation times the root of its corner,
-/// of its corner, walk and sensor noise. Above the corner the intensity alone is seen.
 using Point = SearchPoint;
-
-NoiseParameters noise_of(const Point& point) {
-  return {std::exp(point[0] - 0.5 * point[1]), std::exp(point[1]), std::exp(point[2]),
-          std::exp(point[3])};
-}
-
-Point point_of(const NoiseParameters& noise) {
-  return {std::log(noise.disturbance_sd * std::sqrt(noise.corner_Hz)), std::log(noise.corner_Hz),
-          std::log(noise.walk_m), std::log(noise.sensor_m)};
-}
 
 /// RMS of the position that a constant unit of F moves within a second.
 double reach_per_unit_m(const Linearisations& models, const FitDataset& data) {
@@ -192,6 +180,41 @@ class Likelihood {
 
 double most_corner_Hz(const FitDataset& data) { return kMostCorner_ratio / data.sample_time_s; }
 
+NoiseParameters noise_of(const SearchPoint& point) {
+  return {std::exp(point[0] - 0.5 * point[1]), std::exp(point[1]), std::exp(point[2]),
+          std::exp(point[3])};
+}
+
+SearchPoint point_of(const NoiseParameters& noise) {
+  return {std::log(noise.disturbance_sd * std::sqrt(noise.corner_Hz)), std::log(noise.corner_Hz),
+          std::log(noise.walk_m), std::log(noise.sensor_m)};
+}
+
+namespace {
+
+/// A disturbance that moves the rod by the sensor's noise within a second; an axis with little
+/// damping and a fine sensor moves by a million times as much.
+double unit_of(const Linearisations& models, const FitDataset& data) {
+  return data.noise_floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
+}
+
+/// The walk that the weak observer of a simulation assumes.
+double observer_walk_m(const FitDataset& data) {
+  return kObserver_per_s * data.sample_time_s * data.noise_floor_m;
+}
+
+}  // namespace
+
+SearchBounds noise_bounds(const Linearisations& models, const FitDataset& data) {
+  const double floor_m = data.noise_floor_m;
+  const double unit = unit_of(models, data);
+  const double walk_m = observer_walk_m(data);
+  return {Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
+                std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
+          Point(std::log(kMostDisturbance_units * unit), std::log(most_corner_Hz(data)),
+                std::log(kMostWalk_ratio * walk_m), std::log(data.most_sensor_ratio * floor_m))};
+}
+
 Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
                          const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                          double force_place) {
@@ -321,16 +344,9 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
                              unsigned threads, double enough) {
   Likelihood likelihood(model, data, parameters, theta, models, start, threads);
   const double floor_m = data.noise_floor_m;
-  const double observer = kObserver_per_s * data.sample_time_s;
-  // a disturbance that moves the rod by the sensor's noise within a second; an axis with little
-  // damping and a fine sensor moves by a million times as much
-  const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
-  const double walk_m = observer * floor_m;
-  const SearchBounds bounds{
-      Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
-            std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
-      Point(std::log(kMostDisturbance_units * unit), std::log(most_corner_Hz(data)),
-            std::log(kMostWalk_ratio * walk_m), std::log(data.most_sensor_ratio * floor_m))};
+  const double unit = unit_of(models, data);
+  const double walk_m = observer_walk_m(data);
+  const SearchBounds bounds = noise_bounds(models, data);
   const auto within = [&](const Point& point) -> Point {
     return point.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   };

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "estimator/greybox/disturbance/batch_newton.h"
 #include "estimator/greybox/disturbance/kalman_gains.h"
 #include "estimator/greybox/disturbance/spectral_lines.h"
 #include "estimator/greybox/fit_dataset.h"
@@ -77,6 +78,13 @@ struct NoiseEstimate {
                                               const Eigen::VectorXd& theta,
                                               const Linearisations& models,
                                               const NoiseModel& noise);
+
+/// Noise parameters as they are searched: logarithms of the disturbance's intensity, its standard
+/// deviation times the root of its corner, of its corner, walk and sensor noise. Above the corner
+/// the intensity alone is seen.
+[[nodiscard]] SearchPoint point_of(const NoiseParameters& noise);
+[[nodiscard]] NoiseParameters noise_of(const SearchPoint& point);
+[[nodiscard]] SearchBounds noise_bounds(const Linearisations& models, const FitDataset& data);
 
 /// Fall of -2 log L below which a step of the search for a noise model is its last.
 inline constexpr double kLastNoiseStep = 0.1;

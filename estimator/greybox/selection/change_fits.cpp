@@ -76,7 +76,8 @@ InnovationStage tried(const ChangeProposal& proposal, const InnovationStage& sta
 
 InnovationStage fitted(const ChangeProposal& proposal, const InnovationStage& stage,
                        SimulationWidth width) {
-  return settled(proposal.context, tried(proposal, stage, width).model, stage.noise, 1, width);
+  return settled(proposal.context, tried(proposal, stage, width).model, stage.noise, Settling::once,
+                 width);
 }
 
 std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposals,
@@ -98,8 +99,8 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
     }
     in_parallel(near.size(), threads, [&](std::size_t k) {
       const std::size_t i = near[k];
-      stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise, 1,
-                          SimulationWidth{});
+      stages[i] = settled(proposals[i].context, std::move(stages[i].model), stage.noise,
+                          Settling::once, SimulationWidth{});
       has_noise_model[i] = 1;
     });
     more = !near.empty();
@@ -113,13 +114,13 @@ std::vector<InnovationStage> fit_all(const std::vector<ChangeProposal>& proposal
 
 InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,
                          SimulationWidth width) {
-  InnovationStage stage = settled(taken.context, found.model, found.noise, kMostTurns, width);
+  InnovationStage stage = settled(taken.context, found.model, found.noise, Settling::fully, width);
   if (!(stage.minus_two_log < found.minus_two_log)) stage = found;
   for (int turn = 0; turn < kScans; ++turn) {
     ModelStage moved = stage.model;
     if (!scan_time(stage.context, name_of(taken.score) + ".at_s", moved.fitted)) break;
     InnovationStage other =
-        settled(taken.context, std::move(moved), stage.noise, kMostTurns, width);
+        settled(taken.context, std::move(moved), stage.noise, Settling::fully, width);
     if (!(other.minus_two_log < stage.minus_two_log)) break;
     stage = std::move(other);
   }

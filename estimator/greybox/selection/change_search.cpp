@@ -277,7 +277,8 @@ FoundChanges search_changes(const SearchContext& context, const ModelStage& base
                             ChangesSought sought, const std::vector<ChangeProposal>& starts) {
   if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
   ChangeSearch search{context, {}, {}};
-  InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
+  InnovationStage stage =
+      settled(context, base, {}, Settling::fully, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
   if (starts.empty() && motion_explains_more(stage) != (sought == ChangesSought::after_laws))
     return {};

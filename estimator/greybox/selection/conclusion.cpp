@@ -60,21 +60,6 @@ void list_steps(Diagnosis& result) {
   }
 }
 
-/// Held-out error of a simulation, its parameters fitted to such.
-double least_rms_m(const SearchContext& context, const FitSummary& fitted, double observer_per_s) {
-  constexpr int kIterations = 15;
-  constexpr double kTolerance = 1e-3;
-  FitOptions options;
-  options.max_iterations = kIterations;
-  options.tolerance = kTolerance;
-  options.final_jacobian = false;
-  options.observer_per_s = observer_per_s;
-  options.cancel = context.options.cancel;
-  return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
-             fitted.parameters, fitted.theta, options)
-      .validation_rms_m;
-}
-
 /// The observer hides much of a constant or slow effect.
 void list_free_runs(const SearchContext& context, Diagnosis& result) {
   in_parallel(result.steps.size(), context.options.threads, [&](std::size_t i) {
@@ -146,6 +131,20 @@ void take_errors(Diagnosis& result) {
 }
 
 }  // namespace
+
+double least_rms_m(const SearchContext& context, const FitSummary& fitted, double observer_per_s) {
+  constexpr int kIterations = 15;
+  constexpr double kTolerance = 1e-3;
+  FitOptions options;
+  options.max_iterations = kIterations;
+  options.tolerance = kTolerance;
+  options.final_jacobian = false;
+  options.observer_per_s = observer_per_s;
+  options.cancel = context.options.cancel;
+  return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+             fitted.parameters, fitted.theta, options)
+      .validation_rms_m;
+}
 
 std::vector<Localisation> places_of(const SearchContext& context, const ModelStage& stage) {
   std::vector<Localisation> where = localise(context, stage);
@@ -295,7 +294,8 @@ std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
     if (!is_nothing(final, added[i])) continue;
     InnovationSearch rest = innovations;
     const InnovationStage& less = innovations.without[i];
-    rest.final = settled(search, less.model, less.noise, kMostTurns, wide(search.options.threads));
+    rest.final =
+        settled(search, less.model, less.noise, Settling::fully, wide(search.options.threads));
     rest.without.clear();
     rest.rivals.clear();
     rest.gains_nats.erase(added[i]);

@@ -18,6 +18,11 @@ namespace estimator::greybox::selection {
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);
 
+/// Held-out error of a simulation, the parameters of `fitted` fitted to such from where they are,
+/// m.
+[[nodiscard]] double least_rms_m(const SearchContext& context, const FitSummary& fitted,
+                                 double observer_per_s);
+
 /// Noise of the sensor: the data set's floor, or the noise model's where that is no more than a
 /// bound.
 [[nodiscard]] double sensor_noise_m(const SearchContext& search,

@@ -37,8 +37,18 @@ constexpr double kPeriodsOfDrift = 4.0;
 /// Share of the error from which on another beginning of the search leaves far less.
 constexpr double kFarLess = 0.5;
 
+constexpr const char* kTransportDelay = "transport_delay.delay_s";
+/// Share of the command's lead from which on a delay takes it back.
+constexpr double kUndone = 0.5;
+
 /// Searches for laws before all effects have been tried, each beside other effects than before.
 constexpr std::size_t kMostEarlySearches = 2;
+
+/// True where a simulation whose parameters are fitted to it leaves less than `most_m`: what the
+/// stage's own leaves beyond that is its disturbance's.
+bool follows_motion(const SearchContext& search, const InnovationStage& stage, double most_m) {
+  return least_rms_m(search, stage.model.fitted, kObserver_per_s) < most_m;
+}
 
 /// The search without its effects, where these leave a simulation worse on held-out data: what the
 /// likelihood gains by them is a matter of the noise, not of the motion. Between errors that are
@@ -55,7 +65,9 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
                                   ? innovations.before.model.fitted
                                   : plain_round->before.fitted;
   const double without_m = simulated(search, without).validation_rms_m;
-  if (with_m < (1.0 + kClearlyWorse) * without_m) return;
+  const double most_m = (1.0 + kClearlyWorse) * without_m;
+  if (with_m < most_m) return;
+  if (!innovations.physics_missing() && follows_motion(search, innovations.final, most_m)) return;
   InnovationSearch plain;
   plain.before = innovations.before;
   plain.final = std::move(innovations.before);
@@ -115,7 +127,8 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const double expected_m =
       std::max((1.0 + kClearlyWorse) * first.fitted.validation_rms_m,
                (1.0 + (understood ? kSlowDisturbance : kClearlyWorse)) * floor_m);
-  const bool worse = !(held.validation_rms_m <= expected_m);
+  const bool worse = !(held.validation_rms_m <= expected_m) &&
+                     !(understood && follows_motion(search, innovations.final, expected_m));
   if (context.cancelled() || (!worse && understood)) {
     if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;
@@ -157,10 +170,11 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
 bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   if (!is_explained(context, stage)) return false;
   if (stage.added.size() < 2) return true;
-  for (const int turns : {1, kMostTurns}) {  // one turn shows it where nothing is missing
+  // once shows it where nothing is missing
+  for (const Settling effort : {Settling::once, Settling::fully}) {
     if (context.cancelled()) return true;
     InnovationSearch search;
-    search.final = settled(context, stage, {}, turns, wide(context.options.threads));
+    search.final = settled(context, stage, {}, effort, wide(context.options.threads));
     if (!std::isfinite(search.final.minus_two_log)) return true;
     weigh_remainder(context, search);
     if (!search.physics_missing()) return true;
@@ -180,7 +194,7 @@ bool leaves_physics_to_simulations(const SearchContext& context, const ModelStag
   if (is_explained(context, stage) || context.cancelled()) return false;
   const SearchContext fitted = without_holdouts(context);
   InnovationSearch left;
-  left.final = settled(fitted, stage, {}, 1, wide(context.options.threads));
+  left.final = settled(fitted, stage, {}, Settling::once, wide(context.options.threads));
   if (!std::isfinite(left.final.minus_two_log)) return true;
   weigh_remainder(fitted, left);
   return left.physics_missing() && !leaves_a_line(fitted, left);

@@ -132,7 +132,8 @@ void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
       const double lag = other.minus_two_log - final.minus_two_log;
       if (!(lag < 2.0 * kWorthPolishing_nats)) continue;
       if (lag >= 2.0 * kRivals_nats) {
-        other = settled(plain, other.model, other.noise, kMostTurns, wide(plain.options.threads));
+        other =
+            settled(plain, other.model, other.noise, Settling::fully, wide(plain.options.threads));
         if (!(other.minus_two_log < final.minus_two_log + 2.0 * kRivals_nats)) continue;
       }
       double sum = 0.0;

@@ -23,7 +23,7 @@ double held_gain_nats(const SearchContext& context, const InnovationStage& stage
                       const ModelStage& held) {
   if (held.added.empty()) return 0.0;
   const InnovationStage other =
-      settled(context, held, stage.noise, 1, wide(context.options.threads));
+      settled(context, held, stage.noise, Settling::once, wide(context.options.threads));
   return 0.5 * (penalised(stage) - penalised(other));
 }
 
@@ -37,7 +37,7 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
     return false;
   }
   const InnovationStage stage =
-      settled(context, first, {}, kMostTurns, wide(context.options.threads));
+      settled(context, first, {}, Settling::fully, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return false;
   const double by_effects_nats = std::max(kCurve_nats, promised_nats(stage));
   const double by_changes_nats = change_nats(stage);

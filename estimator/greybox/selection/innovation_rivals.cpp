@@ -44,7 +44,7 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   model.fitted.theta = parameters.start;
   model.fitted =
       fit_innovations(stage.context, parameters, wide(plain.options.threads), InnovationFit::trial);
-  return settled(plain, std::move(model), stage.noise, 1, wide(plain.options.threads));
+  return settled(plain, std::move(model), stage.noise, Settling::once, wide(plain.options.threads));
 }
 
 }  // namespace
@@ -108,7 +108,8 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   in_parallel(rivals.size(), threads, [&](std::size_t i) {
     const double behind_nats = 0.5 * (penalised(found[i]) - penalised(final));
     if (!(behind_nats >= kRivals_nats && behind_nats < worth_polishing_nats)) return;
-    InnovationStage polished = settled(plain, found[i].model, found[i].noise, kMostTurns, width);
+    InnovationStage polished =
+        settled(plain, found[i].model, found[i].noise, Settling::fully, width);
     if (penalised(polished) < penalised(found[i])) found[i] = std::move(polished);
   });
   std::erase_if(found, [&](const InnovationStage& other) {

@@ -192,7 +192,7 @@ class RoundTrials {
       if (plain_.cancelled()) return;
       polished_[i] = 1;
       InnovationStage turned =
-          settled(plain_, stages_[i].model, stages_[i].noise, kMostTurns, width);
+          settled(plain_, stages_[i].model, stages_[i].noise, Settling::fully, width);
       if (turned.minus_two_log < stages_[i].minus_two_log) take(i, std::move(turned));
     });
   }
@@ -214,8 +214,8 @@ std::vector<InnovationStage> at_other_sites(const SearchContext& plain,
   std::erase(sites, stage.noise.lines[line].site);
   std::vector<InnovationStage> others(sites.size());
   in_parallel(sites.size(), plain.options.threads, [&](std::size_t k) {
-    others[k] =
-        settled(plain, stage.model, moved(stage.noise, line, sites[k]), 1, SimulationWidth{});
+    others[k] = settled(plain, stage.model, moved(stage.noise, line, sites[k]), Settling::once,
+                        SimulationWidth{});
   });
   return others;
 }

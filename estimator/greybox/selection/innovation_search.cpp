@@ -27,9 +27,6 @@ constexpr double kInexactLines = 0.0005;
 constexpr double kOutOfReach_nats = 200.0;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
-/// Most turns of the base, by which all candidates are judged: where a disturbance is far above the
-/// sensor's noise, each turn brings it and the plant's parameters apart by a part of the way.
-constexpr int kBaseTurns = 25;
 /// Effects with which a change or a law found early is compared.
 constexpr std::size_t kComparedEffects = 2;
 /// Fastest speed over the RMS of the motion's.
@@ -40,9 +37,9 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
                InnovationStage& stage, std::vector<InnovationRound>& rounds) {
   if (held.added.empty() || context.cancelled()) return;
   const SimulationWidth width = wide(context.options.threads);
-  InnovationStage other = settled(context, held, stage.noise, 1, width);
+  InnovationStage other = settled(context, held, stage.noise, Settling::once, width);
   if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return;
-  InnovationStage turned = settled(context, other.model, other.noise, kMostTurns, width);
+  InnovationStage turned = settled(context, other.model, other.noise, Settling::fully, width);
   if (penalised(turned) < penalised(other)) other = std::move(turned);
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   if (!effect_out_of_range(other).empty()) return;
@@ -105,7 +102,7 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
     if (best == others.end() || !(penalised(*best) < penalised(stage) - 2.0 * kRivals_nats))
       continue;
     InnovationStage polished =
-        settled(context, best->model, best->noise, kMostTurns, wide(context.options.threads));
+        settled(context, best->model, best->noise, Settling::fully, wide(context.options.threads));
     if (penalised(polished) < penalised(*best)) *best = std::move(polished);
     InnovationCandidate candidate;
     candidate.effect = best->model.added.back();
@@ -137,7 +134,7 @@ bool take_line_for_resonance(const SearchContext& context, InnovationSearch& sea
   stage = std::move(instead->stage);
   reconsider_sites(context, stage);
   InnovationStage polished =
-      settled(context, stage.model, stage.noise, kMostTurns, wide(context.options.threads));
+      settled(context, stage.model, stage.noise, Settling::fully, wide(context.options.threads));
   if (penalised(polished) < penalised(stage)) stage = std::move(polished);
   return true;
 }
@@ -147,7 +144,7 @@ bool ends_at_held(const SearchContext& context, const ModelStage& held,
                   const InnovationSearch& search, const SearchLimits& limits) {
   if (!limits.ends_at || held.added.size() < 2 || context.cancelled()) return false;
   const InnovationStage stage =
-      settled(context, held, search.before.noise, 1, wide(context.options.threads));
+      settled(context, held, search.before.noise, Settling::once, wide(context.options.threads));
   return penalised(stage) < penalised(search.before) &&
          limits.ends_at(stage, inexact_nats(context, search, stage));
 }
@@ -200,11 +197,11 @@ bool is_clearly_likelier(const SearchContext& with_holdouts, const InnovationSta
   in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
     // with the lines that were seen beside what was found
     const InnovationStage once =
-        settled(context, std::move(others[i]), found.noise, 1, SimulationWidth{});
+        settled(context, std::move(others[i]), found.noise, Settling::once, SimulationWidth{});
     costs[i] = penalised(once);
     if (!(costs[i] < enough + 2.0 * kOutOfReach_nats)) return;
-    costs[i] = std::min(costs[i], penalised(settled(context, once.model, once.noise, kMostTurns,
-                                                    SimulationWidth{})));
+    costs[i] = std::min(costs[i], penalised(settled(context, once.model, once.noise,
+                                                    Settling::fully, SimulationWidth{})));
   });
   return !context.cancelled() &&
          std::all_of(costs.begin(), costs.end(), [&](double cost) { return enough < cost; });
@@ -215,7 +212,8 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
   search.memo = TrialMemo(held.rounds);
-  InnovationStage stage = settled(context, first, {}, kBaseTurns, wide(context.options.threads));
+  InnovationStage stage =
+      settled(context, first, {}, Settling::fully, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };

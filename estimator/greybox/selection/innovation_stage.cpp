@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "estimator/greybox/disturbance/joint_maximum.h"
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/likeliest_start.h"
@@ -38,7 +39,12 @@ constexpr double kRevived = 2.0;
 constexpr double kPerRefinement = 6.0;
 /// Fall of -2 log L by a step of a trial's noise model below which it is the last.
 constexpr double kLastTrialNoiseStep = 1.0;
-/// Fall of -2 log L below which another turn of noise model and parameters is of no use.
+/// Turns of noise model and parameters before both are sought together, which finds the maximum
+/// from where no start elsewhere leads to another.
+constexpr int kTurns = 2;
+/// Searches for both together, the frequencies of lines tuned between them, and the fall of
+/// -2 log L below which another one is of no use.
+constexpr int kMostJoint = 2;
 constexpr double kSettled = 1.0;
 
 /// Starts with a wider and a narrower play: between widths that make contact at other reversals,
@@ -129,11 +135,44 @@ void refit(const SearchContext& plain, InnovationStage& stage,
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
                             stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,
                             stage.noise);
-  stage.minus_two_log =
-      squares(stage.model.fitted, floor_m) + data.log_determinant + prior_cost(stage.model.fitted);
+  take_own_predictor(plain, stage);
+}
+
+/// Moves parameters and noise model to where both together are likeliest.
+void maximise_jointly(const SearchContext& plain, InnovationStage& stage, unsigned threads) {
+  disturbance::JointMaximum found = disturbance::joint_maximum(
+      plain.problem.model, stage.context.problem.data, stage.model.fitted.parameters,
+      stage.model.fitted.theta, stage.noise, threads, plain.options.cancel);
+  if (plain.cancelled()) return;
+  InnovationStage moved = stage;
+  moved.model.fitted.theta = std::move(found.theta);
+  moved.noise = std::move(found.noise);
+  take_own_predictor(plain, moved);
+  if (!(moved.minus_two_log < stage.minus_two_log)) return;
+  // with frozen gains: the innovations are orthogonal to these slopes as to those of other effects
+  const ParameterSubset all = subset(moved.model.fitted, [](const auto&) { return true; });
+  FitSummary there = fit_innovations(moved.context, all, SimulationWidth{}, InnovationFit::none);
+  moved.model.fitted.jacobian = std::move(there.jacobian);
+  moved.model.fitted.at_bound = std::move(there.at_bound);
+  stage = std::move(moved);
 }
 
 }  // namespace
+
+void take_own_predictor(const SearchContext& plain, InnovationStage& stage) {
+  FitSummary& fitted = stage.model.fitted;
+  const plant_sim::ModelFile& model = plain.problem.model;
+  stage.linear = disturbance::linearise(model, stage.context.problem.data, fitted.parameters,
+                                        fitted.theta, stage.noise.force_place);
+  disturbance::InnovationData own = disturbance::innovation_data(
+      model, plain.problem.data, fitted.parameters, fitted.theta, stage.linear, stage.noise);
+  stage.context = with_data(plain, std::move(own.data));
+  Eigen::MatrixXd jacobian = std::move(fitted.jacobian);
+  fitted = simulated(stage.context, fitted);
+  fitted.jacobian = std::move(jacobian);
+  stage.minus_two_log =
+      squares(fitted, plain.problem.data.noise_floor_m) + own.log_determinant + prior_cost(fitted);
+}
 
 double squares(const FitSummary& fitted, double floor_m) {
   return fitted.residual_m.squaredNorm() / (floor_m * floor_m);
@@ -144,7 +183,10 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
   const bool quick = effort == InnovationFit::quick;
   const bool trial = effort == InnovationFit::trial;
   FitOptions options;
-  options.max_iterations = quick ? kQuickIterations : trial ? kTrialIterations : kIterations;
+  options.max_iterations = effort == InnovationFit::none ? 0
+                           : quick                       ? kQuickIterations
+                           : trial                       ? kTrialIterations
+                                                         : kIterations;
   options.tolerance = quick ? kQuickTolerance : trial ? kTrialTolerance : kTolerance;
   options.passes = quick ? 1 : 2;
   options.final_jacobian = !quick;
@@ -156,75 +198,76 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
 
 namespace {
 
-SettledMemo::Settled settled_anew(const SearchContext& plain, ModelStage model,
-                                  const disturbance::NoiseModel& start, int turns,
-                                  SimulationWidth width) {
+InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
+                             const disturbance::NoiseModel& start, Settling effort,
+                             SimulationWidth width) {
   if (plain.cancelled()) return {};
+  const bool fully = effort == Settling::fully;
   InnovationStage stage;
   stage.model = std::move(model);
   stage.noise = start;
   stage.context = plain;
+  const FitSummary& fitted = stage.model.fitted;
   // a disturbance that was not known may have bent the parameters
   std::optional<Eigen::VectorXd> other = with_file_values(plain, stage.model);
   if (!(start.noise.sensor_m > 0.0)) {
-    FitSummary& fitted = stage.model.fitted;
     std::vector<ParameterSubset> starts = {{fitted.parameters, fitted.theta}};
     if (*other != fitted.theta) starts.push_back({fitted.parameters, *other});
     LikeliestStart likeliest = likeliest_start(plain, std::move(starts), start, width.threads);
     stage.noise = std::move(likeliest.noise);
     if (likeliest.start.start != fitted.theta)
-      *other = std::exchange(fitted.theta, likeliest.start.start);
+      *other = std::exchange(stage.model.fitted.theta, likeliest.start.start);
   }
-  SettledMemo::Settled result;
-  InnovationStage& best = result.stage;
-  for (int i = 0; i < turns && !plain.cancelled(); ++i) {
-    result.turns = i + 1;
-    const FitSummary& fitted = stage.model.fitted;
-    const auto estimate_noise = [&] {
-      stage.noise =
-          disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
-                                      fitted.theta, stage.linear, stage.noise, width.threads,
-                                      turns > 1 ? disturbance::kLastNoiseStep : kLastTrialNoiseStep)
-              .noise;
-    };
-    stage.linear = disturbance::linearise(plain.problem.model, stage.context.problem.data,
-                                          fitted.parameters, fitted.theta, stage.noise.force_place);
-    if (i == 0 && disturbance::has_play(plain.problem.model, fitted.parameters, fitted.theta)) {
-      estimate_noise();
-      const disturbance::InnovationData followed =
-          disturbance::innovation_data(plain.problem.model, plain.problem.data, fitted.parameters,
-                                       fitted.theta, stage.linear, stage.noise);
-      stage.linear = disturbance::linearise(plain.problem.model, followed.data, fitted.parameters,
-                                            fitted.theta, stage.noise.force_place);
-    }
+  const plant_sim::ModelFile& file = plain.problem.model;
+  const auto linearise = [&](const FitDataset& data) {
+    stage.linear = disturbance::linearise(file, data, fitted.parameters, fitted.theta,
+                                          stage.noise.force_place);
+  };
+  const auto estimate_noise = [&] {
+    stage.noise =
+        disturbance::estimate_noise(file, plain.problem.data, fitted.parameters, fitted.theta,
+                                    stage.linear, stage.noise, width.threads,
+                                    fully ? disturbance::kLastNoiseStep : kLastTrialNoiseStep)
+            .noise;
+  };
+  const auto tune_frequencies = [&](InnovationStage& of) {
+    disturbance::tune_frequencies(file, of.context.problem.data, of.model.fitted.parameters,
+                                  of.model.fitted.theta, of.linear, of.noise);
+  };
+  linearise(plain.problem.data);
+  if (disturbance::has_play(file, fitted.parameters, fitted.theta)) {
     estimate_noise();
-    refit(plain, stage, other, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
-    other.reset();
-    const double gain = penalised(best) - penalised(stage);
-    if (gain > 0.0) best = stage;
-    result.converged = gain < kSettled;
-    if (result.converged) break;
-    if (i + 1 < turns) {
-      disturbance::tune_frequencies(stage.context.problem.model, stage.context.problem.data,
-                                    stage.model.fitted.parameters, stage.model.fitted.theta,
-                                    stage.linear, stage.noise);
-    }
+    linearise(disturbance::innovation_data(file, plain.problem.data, fitted.parameters,
+                                           fitted.theta, stage.linear, stage.noise)
+                  .data);
   }
-  return result;
+  InnovationStage best;
+  for (int i = 0; i < (fully ? kTurns : 1) && !plain.cancelled(); ++i) {
+    if (i > 0) tune_frequencies(stage);
+    estimate_noise();
+    refit(plain, stage, other, fully ? InnovationFit::converged : InnovationFit::trial, width);
+    other.reset();
+    if (penalised(stage) < penalised(best)) best = stage;
+  }
+  for (int i = 0; i < (fully ? kMostJoint : 0) && !plain.cancelled(); ++i) {
+    const double before = best.minus_two_log;
+    maximise_jointly(plain, best, width.threads);
+    if (!(best.minus_two_log < before - kSettled)) break;
+  }
+  return best;
 }
 
 }  // namespace
 
 InnovationStage settled(const SearchContext& plain, ModelStage model,
-                        const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
-  if (!plain.memo) return settled_anew(plain, std::move(model), start, turns, width).stage;
-  const std::string key = SettledMemo::key_of(plain, model, start, width);
-  if (std::optional<InnovationStage> known = plain.memo->find(plain, key, turns))
-    return *std::move(known);
-  SettledMemo::Settled anew = settled_anew(plain, std::move(model), start, turns, width);
-  if (!plain.cancelled() && std::isfinite(anew.stage.minus_two_log))
-    plain.memo->keep(key, turns, anew);
-  return std::move(anew.stage);
+                        const disturbance::NoiseModel& start, Settling effort,
+                        SimulationWidth width) {
+  if (!plain.memo) return settled_anew(plain, std::move(model), start, effort, width);
+  const std::string key = SettledMemo::key_of(plain, model, start, effort, width);
+  if (std::optional<InnovationStage> known = plain.memo->find(plain, key)) return *std::move(known);
+  InnovationStage anew = settled_anew(plain, std::move(model), start, effort, width);
+  if (!plain.cancelled() && std::isfinite(anew.minus_two_log)) plain.memo->keep(key, anew);
+  return anew;
 }
 
 FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {

@@ -25,6 +25,7 @@ struct InnovationStage {
 /// Fit to the innovations of the context's data: quick to compare candidates, or to convergence
 /// with a Jacobian.
 enum class InnovationFit {
+  none,      ///< the Jacobian alone
   quick,     ///< ranks candidates
   trial,     ///< decides between candidates: to a nat or so
   converged  ///< the parameters of a model that stays
@@ -36,12 +37,18 @@ enum class InnovationFit {
 /// Squared innovations in units of the noise floor.
 [[nodiscard]] double squares(const FitSummary& fitted, double floor_m);
 
-/// Turns of noise model and parameters until the likelihood no longer rises.
-inline constexpr int kMostTurns = 5;
-/// Noise model and parameters in turn, at most `turns` over, from those of `model` and `start`; the
-/// best of them. `plain`: data without innovations. Unfinished when cancelled.
+/// Gives the stage the predictor that follows its parameters and noise model, and the likelihood
+/// with that one. The Jacobian stays.
+void take_own_predictor(const SearchContext& plain, InnovationStage& stage);
+
+enum class Settling {
+  once,  ///< noise model and parameters in turn, once: to compare candidates
+  fully  ///< to where parameters and noise model together are likeliest
+};
+/// A model with a noise model of its own, both from those of `model` and `start`. `plain`: data
+/// without innovations. Unfinished when cancelled.
 [[nodiscard]] InnovationStage settled(const SearchContext& plain, ModelStage model,
-                                      const disturbance::NoiseModel& start, int turns,
+                                      const disturbance::NoiseModel& start, Settling effort,
                                       SimulationWidth width);
 
 /// A fit's parameters in a simulation with the weak observer, without Jacobian.

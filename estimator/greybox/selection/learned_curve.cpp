@@ -182,7 +182,7 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
   with_gains.problem.data = stage.context.problem.data;
   model.fitted = fit_innovations(with_gains, all, SimulationWidth{}, InnovationFit::trial);
   model.added.push_back(attempt.effect.name);
-  return settled(attempt.context, std::move(model), stage.noise, 1, SimulationWidth{});
+  return settled(attempt.context, std::move(model), stage.noise, Settling::once, SimulationWidth{});
 }
 
 /// The curve at a place through so many points; none where the signal hardly varies.
@@ -267,12 +267,12 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
 std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const ModelStage& base) {
   const SearchContext context = without_holdouts(with_holdouts);
   const SimulationWidth width = wide(context.options.threads);
-  const InnovationStage stage = settled(context, base, {}, kMostTurns, width);
+  const InnovationStage stage = settled(context, base, {}, Settling::fully, width);
   if (!std::isfinite(stage.minus_two_log) || context.cancelled()) return {};
   std::optional<Attempt> best = likeliest(context, stage);
   if (!best) return {};
   InnovationStage found =
-      settled(best->context, best->stage.model, best->stage.noise, kMostTurns, width);
+      settled(best->context, best->stage.model, best->stage.noise, Settling::fully, width);
   if (!(found.minus_two_log < best->stage.minus_two_log)) found = std::move(best->stage);
   if (!(penalised(found) < penalised(stage) - 2.0 * kEvidence_nats)) return {};
   LawSearch search{best->context, base, {}, {{best->effect, {best->place.variable}}}};

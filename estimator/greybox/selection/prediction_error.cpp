@@ -27,7 +27,7 @@ std::optional<PredictionErrors> prediction_errors(const SearchContext& context,
   if (search.final.model.added.empty()) return {};
   InnovationStage before = search.before;
   if (!search.final.noise.lines.empty()) {
-    before = settled(without_holdouts(context), before.model, search.final.noise, 1,
+    before = settled(without_holdouts(context), before.model, search.final.noise, Settling::once,
                      wide(context.options.threads));
   }
   if (!std::isfinite(before.minus_two_log)) return {};

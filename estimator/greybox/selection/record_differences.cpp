@@ -98,7 +98,8 @@ bool add_difference(Differences& found) {
     ModelStage model = with_difference(found.stage.model, scores[i]);
     model.fitted = fit_innovations(with_gains, {model.fitted.parameters, model.fitted.theta},
                                    SimulationWidth{}, InnovationFit::trial);
-    stages[i] = settled(context, std::move(model), found.stage.noise, 1, SimulationWidth{});
+    stages[i] =
+        settled(context, std::move(model), found.stage.noise, Settling::once, SimulationWidth{});
   });
   const auto likeliest =
       std::min_element(stages.begin(), stages.end(),
@@ -108,7 +109,7 @@ bool add_difference(Differences& found) {
                                              static_cast<std::size_t>(likeliest - stages.begin()));
   const InnovationStage* const best = &stages[chosen];
   InnovationStage next =
-      settled(context, best->model, best->noise, kMostTurns, wide(context.options.threads));
+      settled(context, best->model, best->noise, Settling::fully, wide(context.options.threads));
   if (!(next.minus_two_log < best->minus_two_log)) next = *best;
   const double gain_nats = 0.5 * (penalised(found.stage) - penalised(next));
   if (!(gain_nats > kEvidence_nats)) return false;
@@ -180,9 +181,9 @@ bool find_record_differences(const SearchContext& with_holdouts, const ModelStag
   SearchContext context = without_holdouts(with_holdouts);
   const ModelStage named = result.search.final;
   const SimulationWidth width = wide(context.options.threads);
-  const InnovationStage plain = settled(context, first, {}, kMostTurns, width);
+  const InnovationStage plain = settled(context, first, {}, Settling::fully, width);
   const InnovationStage before =
-      named.added.empty() ? plain : settled(context, named, {}, kMostTurns, width);
+      named.added.empty() ? plain : settled(context, named, {}, Settling::fully, width);
   if (!std::isfinite(plain.minus_two_log) || !std::isfinite(before.minus_two_log)) return false;
   std::optional<Differences> found = search_differences(context, before);
   if (!named.added.empty() && result.verdict != Verdict::nothing_missing) {

@@ -21,13 +21,13 @@ std::optional<RemainingDisturbance> remaining_disturbance(const plant_sim::Model
   context = for_search(context);
   ModelStage file;  // no free parameters
   file.fitted = simulated(context, {});
-  InnovationStage stage = settled(context, file, {}, 1, wide(options.threads));
+  InnovationStage stage = settled(context, file, {}, Settling::once, wide(options.threads));
   // lines take long to find, and no line follows the motion
   if (!std::isfinite(stage.minus_two_log) || leaves_much_physics(stage, 0.0)) return {};
   InnovationSearch search;
   search.before = stage;
   add_lines(context, search, stage);
-  search.final = settled(context, stage.model, stage.noise, kMostTurns, wide(options.threads));
+  search.final = settled(context, stage.model, stage.noise, Settling::fully, wide(options.threads));
   if (!std::isfinite(search.final.minus_two_log)) return {};
   weigh_remainder(context, search);
   if (context.cancelled() || search.physics_missing()) return {};

@@ -22,6 +22,8 @@ namespace {
 constexpr double kOnALine = 0.05;
 /// Damping ratio below which a resonance may be a line: metal structures have some 0.01.
 constexpr double kHardlyDamped_ratio = 0.01;
+/// Times over that a second mass is reconsidered while that makes it clearly likelier.
+constexpr int kMostReconsidered = 3;
 constexpr std::string_view kFrequency = ".resonance_Hz";
 
 bool is_on(const disturbance::SpectralLine& line, double resonance_Hz) {
@@ -70,28 +72,31 @@ std::optional<InnovationStage> without_lines_of_resonance(const SearchContext& p
   const auto fewer = static_cast<double>(stage.noise.lines.size() - noise.lines.size());
   if (fewer == 0.0 || plain.cancelled()) return {};
   InnovationStage other =
-      settled(plain, stage.model, noise, kMostTurns, wide(plain.options.threads));
+      settled(plain, stage.model, noise, Settling::fully, wide(plain.options.threads));
   const double lines_nats = fewer * (kEvidence_nats + kPerParameter_nats * kParametersOfLine);
   if (!(penalised(other) < penalised(stage) + 2.0 * lines_nats)) return {};
   return other;
 }
 
 void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) {
-  const FitSummary& fitted = stage.model.fitted;
-  if (!std::isfinite(fitted.value(kSecondMassResonance)) || plain.cancelled()) return;
   const SimulationWidth width = wide(plain.options.threads);
   const auto take = [&](InnovationStage other) {
     const bool stays = effect_out_of_range(other).empty() || !effect_out_of_range(stage).empty();
     if (stays && penalised(other) < penalised(stage)) stage = std::move(other);
   };
-  take(settled(plain, stage.model, with_force_on_other_mass(stage), kMostTurns, width));
-  std::vector<ParameterSubset> shares = mass_share_starts(plain, stage.model);
-  if (shares.empty()) return;
-  LikeliestStart other =
-      likeliest_start(plain, std::move(shares), stage.noise, plain.options.threads);
-  if (!std::isfinite(other.minus_two_log)) return;
-  take(settled(plain, model_at(stage.model.added, std::move(other.start)), other.noise, kMostTurns,
-               width));
+  for (int round = 0; round < kMostReconsidered && !plain.cancelled(); ++round) {
+    const double before = penalised(stage);
+    std::vector<ParameterSubset> shares = mass_share_starts(plain, stage.model);
+    if (shares.empty()) return;
+    take(settled(plain, stage.model, with_force_on_other_mass(stage), Settling::fully, width));
+    LikeliestStart other =
+        likeliest_start(plain, std::move(shares), stage.noise, plain.options.threads);
+    if (!std::isfinite(other.minus_two_log)) return;
+    take(settled(plain, model_at(stage.model.added, std::move(other.start)), other.noise,
+                 Settling::fully, width));
+    // another optimum may be one of several between here and the likeliest
+    if (!(penalised(stage) < before - 2.0 * kRivals_nats)) return;
+  }
 }
 
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
@@ -116,7 +121,7 @@ std::optional<LineInstead> line_for_resonance(const SearchContext& plain,
   disturbance::NoiseModel noise = result.without.noise;
   noise.lines.push_back(on->line);
   result.stage =
-      settled(plain, result.without.model, noise, kMostTurns, wide(plain.options.threads));
+      settled(plain, result.without.model, noise, Settling::fully, wide(plain.options.threads));
   const double penalty = kPerParameter_nats * kParametersOfLine;
   if (!(penalised(result.stage) + 2.0 * penalty < penalised(stage) + 2.0 * kRivals_nats)) return {};
   result.candidate.line = on->line;

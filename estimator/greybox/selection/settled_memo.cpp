@@ -146,16 +146,14 @@ std::size_t size_bytes_of(const InnovationStage& stage) {
   return bytes + numbers * sizeof(double);
 }
 
-constexpr const char* kConverged = "converged";
-
-std::string after_turns(const std::string& key, int turns) { return key + std::to_string(turns); }
-
 }  // namespace
 
 std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& model,
-                                const disturbance::NoiseModel& start, SimulationWidth width) {
+                                const disturbance::NoiseModel& start, Settling effort,
+                                SimulationWidth width) {
   const DiagnosisProblem& problem = plain.problem;
   KeyBytes key;
+  key.add(effort == Settling::fully);
   key.add(width.groups);  // a part of a fit's result, as the number of threads is not
   key.add(hash_of(problem.data));
   for (const double value : {problem.data.noise_floor_m, problem.data.least_floor_m,
@@ -189,14 +187,12 @@ std::shared_ptr<const SettledMemo::Kept> SettledMemo::use(const std::string& key
   return known->second.kept;
 }
 
-std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain, const std::string& key,
-                                                 int turns) {
+std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
+                                                 const std::string& key) {
   std::shared_ptr<const Kept> kept;
   {
     const std::lock_guard lock(mutex_);
-    // a single turn fits with less effort than each of several
-    if (turns > 1) kept = use(key + kConverged);
-    if (!kept || kept->turns > turns) kept = use(after_turns(key, turns));
+    kept = use(key);
   }
   if (!kept) return {};
   InnovationStage stage = kept->stage;
@@ -208,13 +204,9 @@ std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain, con
   return stage;
 }
 
-void SettledMemo::keep(const std::string& key, int turns, const Settled& settled) {
-  const InnovationStage& stage = settled.stage;
-  const std::string full =
-      turns > 1 && settled.converged ? key + kConverged : after_turns(key, turns);
+void SettledMemo::keep(const std::string& key, const InnovationStage& stage) {
   auto kept = std::make_shared<Kept>();
-  kept->turns = settled.turns;
-  kept->size_bytes = size_bytes_of(stage) + full.size();
+  kept->size_bytes = size_bytes_of(stage) + key.size();
   for (const Dataset& record : stage.context.problem.data.records)
     kept->gains.push_back(record.innovations);
   kept->stage.model = stage.model;
@@ -222,7 +214,7 @@ void SettledMemo::keep(const std::string& key, int turns, const Settled& settled
   kept->stage.linear = stage.linear;
   kept->stage.minus_two_log = stage.minus_two_log;
   const std::lock_guard lock(mutex_);
-  const auto [at, is_new] = stages_.try_emplace(full);
+  const auto [at, is_new] = stages_.try_emplace(key);
   if (!is_new) return;
   size_bytes_ += kept->size_bytes;
   at->second = {std::move(kept), by_use_.insert(by_use_.end(), &at->first)};

@@ -19,26 +19,19 @@ namespace estimator::greybox::selection {
 /// whether it is kept never changes an answer.
 class SettledMemo {
  public:
-  /// A stage after a number of turns, which more do not change where it has converged.
-  struct Settled {
-    InnovationStage stage;
-    int turns = 0;
-    bool converged = false;
-  };
-
-  /// Bytes of everything but the turns that settled() depends on: records, model with the effects
-  /// in use, parameters, noise model and the width of its simulations. `plain`: data without
+  /// Bytes of everything that settled() depends on: records, model with the effects in use,
+  /// parameters, noise model, effort and the width of its simulations. `plain`: data without
   /// innovations.
   [[nodiscard]] static std::string key_of(const SearchContext& plain, const ModelStage& model,
-                                          const disturbance::NoiseModel& start,
+                                          const disturbance::NoiseModel& start, Settling effort,
                                           SimulationWidth width);
 
-  /// The stage that at most `turns` lead to, kept under the key, in the context of `plain`.
+  /// The stage kept under the key, in the context of `plain`.
   [[nodiscard]] std::optional<InnovationStage> find(const SearchContext& plain,
-                                                    const std::string& key, int turns);
-  /// Keeps what settled() found within at most `turns`. Drops the stages that were not asked for
-  /// the longest while all take more than `most_bytes`.
-  void keep(const std::string& key, int turns, const Settled& settled);
+                                                    const std::string& key);
+  /// Keeps what settled() found. Drops the stages that were not asked for the longest while all
+  /// take more than `most_bytes`.
+  void keep(const std::string& key, const InnovationStage& stage);
 
   [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
 
@@ -50,7 +43,6 @@ class SettledMemo {
   struct Kept {
     InnovationStage stage;
     std::vector<std::shared_ptr<const InnovationGains>> gains;
-    int turns = 0;
     std::size_t size_bytes = 0;
   };
   struct Entry {
@@ -58,7 +50,7 @@ class SettledMemo {
     std::list<const std::string*>::iterator use;
   };
 
-  /// The stage kept under a key with its turns, the latest asked for from now on; null for none.
+  /// The stage kept under a key, the latest asked for from now on; null for none.
   std::shared_ptr<const Kept> use(const std::string& key);
 
   std::size_t most_bytes_;

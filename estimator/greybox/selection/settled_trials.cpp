@@ -109,8 +109,8 @@ class SettledTrials {
     in_parallel(trials_.size(), plain_.options.threads, [&](std::size_t i) {
       if (trials_[i].elsewhere.empty() || !(best_[i].minus_two_log < hopeless)) return;
       // where the force acts shows once the resonance is found
-      take_better(i, settled(plain_, best_[i].model, with_force_on_other_mass(best_[i]), 1,
-                             SimulationWidth{}));
+      take_better(i, settled(plain_, best_[i].model, with_force_on_other_mass(best_[i]),
+                             Settling::once, SimulationWidth{}));
     });
   }
 
@@ -174,7 +174,8 @@ class SettledTrials {
       PlacedStart& start = starts[k];
       if (!is_line(trials_[start.trial]))
         start.noise = with_likelier_sites(plain_, start.model, std::move(start.noise));
-      reached[k] = settled(plain_, std::move(start.model), start.noise, 1, SimulationWidth{});
+      reached[k] =
+          settled(plain_, std::move(start.model), start.noise, Settling::once, SimulationWidth{});
       const std::lock_guard lock(counting);
       if (--left[start.trial] == 0 && on_done && !plain_.cancelled()) on_done(start.trial);
     });

@@ -44,6 +44,9 @@ constexpr double kMostShare = 0.8;  ///< largest share that a search starts from
 /// Places of a sensor behind the spring: at the second mass, or on the way to it.
 constexpr double kNearLoad = 0.95;
 constexpr double kLeastNearLoad = 0.7;
+/// A sensor is mounted on one of the parts, not within the spring; where the record hardly tells,
+/// resonance and share would follow its place.
+constexpr double kNearLoadSd = 0.1;
 constexpr double kUsualShare = 0.3;
 constexpr double kUsualShareSd = 0.2;
 /// Damping ratio beyond which a response shows no peak worth the name.
@@ -272,6 +275,8 @@ Resonance resonance_of(const std::vector<FreeParameter>& parameters, double freq
     if (ends_with(p.name, kSensor)) {
       take(p, kNearLoad);
       found.parameters.back().lower = p.to_theta(kLeastNearLoad);
+      found.parameters.back().prior_mean = p.to_theta(1.0);
+      found.parameters.back().prior_sd = p.to_theta(kNearLoadSd);
     }
   }
   found.theta = Eigen::Map<const VectorXd>(theta.data(), static_cast<Index>(theta.size()));

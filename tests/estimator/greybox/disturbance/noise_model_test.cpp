@@ -38,8 +38,8 @@ TEST(NoiseModel, ARandomForceFarAboveTheSensorsNoiseIsMeasured) {
                                            "/config/models/force_driven_axis.toml");
   const selection::SearchContext context{
       selection::make_problem(model, fit_dataset({diagnose_test::dataset_of(record)}, {})), {}};
-  const selection::InnovationStage stage =
-      selection::settled(context, selection::first_stage(context), {}, 25, wide(2));
+  const selection::InnovationStage stage = selection::settled(
+      context, selection::first_stage(context), {}, selection::Settling::fully, wide(2));
   const NoiseParameters& found = stage.noise.noise;
   const double intensity = found.disturbance_sd * std::sqrt(found.corner_Hz);
   EXPECT_NEAR(intensity, 10.0 * std::sqrt(2.0), 0.1 * 10.0 * std::sqrt(2.0));
@@ -51,8 +51,8 @@ TEST(NoiseModel, TheSensorsNoiseIsFoundFarBelowAFloorThatIsTooHigh) {
   selection::SearchContext context =
       context_of("motion=multisine,length_s=20,outside.force_N=30,outside.corner_Hz=3", 45);
   context.problem.data.noise_floor_m *= 6.0;
-  const selection::InnovationStage stage =
-      selection::settled(context, selection::first_stage(context), {}, 25, wide(2));
+  const selection::InnovationStage stage = selection::settled(
+      context, selection::first_stage(context), {}, selection::Settling::fully, wide(2));
   constexpr double kSensor_m = 2.46e-6;  // 2 um, and an encoder of 5 um
   EXPECT_NEAR(stage.noise.noise.sensor_m, kSensor_m, 0.1 * kSensor_m);
 }

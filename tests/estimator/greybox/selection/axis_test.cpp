@@ -237,7 +237,7 @@ TEST(AxisFriction, LeavesSomethingToALawOfItsLevelWhereItChangesAlongTheStroke) 
     *context.problem.model.value("friction.transition_mps") = 3e-4;
     context.problem = make_problem(context.problem.model, context.problem.data);
     const InnovationStage stage =
-        settled(context, start_search(context).first, {}, 1, SimulationWidth{});
+        settled(context, start_search(context).first, {}, Settling::once, SimulationWidth{});
     const double nats = friction_level_nats(context, stage);
     EXPECT_EQ(nats > kCurve_nats + 10.0, slope_per_m > 0.0) << nats;
   }

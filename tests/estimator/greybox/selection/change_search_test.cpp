@@ -59,7 +59,7 @@ TEST(Changes, AKnownGainThatStepsIsScoredAsAStep) {
     if (p.name == "gain_mps_per_V") p.prior_sd = 0.002;
   }
   ModelStage first = first_stage(context);
-  const InnovationStage stage = settled(context, first, {}, 1, {});
+  const InnovationStage stage = settled(context, first, {}, Settling::once, {});
   const std::vector<ChangeScore> scores = change_scores(stage);
   ASSERT_FALSE(scores.empty());
   EXPECT_EQ(scores.front().parameter.name, "gain_mps_per_V");
@@ -241,8 +241,8 @@ TEST(Changes, ALoadThatStepsIsDatedFromWithinItsSample) {
     const FreeParameter& p = fitted.parameters[i];
     if (p.name == at) fitted.theta[static_cast<Eigen::Index>(i)] = p.to_theta(7.0022);
   }
-  const InnovationStage again =
-      settled(found->context, early.model, early.noise, 1, wide(context.options.threads));
+  const InnovationStage again = settled(found->context, early.model, early.noise, Settling::once,
+                                        wide(context.options.threads));
   EXPECT_NEAR(again.model.fitted.value(at), 7.0036, 0.0002);
 }
 

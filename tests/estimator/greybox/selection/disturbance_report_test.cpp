@@ -120,7 +120,8 @@ TEST(PredictionError, IsThatOfTheReadingsPredicted) {
   SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=6,outside.force_N=20,outside.corner_Hz=2", 21);
   context.problem.candidate_effects.clear();
-  const InnovationStage stage = settled(context, first_stage(context), {}, 1, SimulationWidth{});
+  const InnovationStage stage =
+      settled(context, first_stage(context), {}, Settling::once, SimulationWidth{});
   const FitSummary& fitted = stage.model.fitted;
   const Dataset& record = stage.context.problem.data.records.front();
   ObserverSimulation run(context.problem.model, record, fitted.parameters);

@@ -172,7 +172,8 @@ TEST(Laws, AModelIsClearlyLikelierOnlyWhereNoEffectAndNoOtherSearchComesNear) {
   const FewEffects right = searched_with({"quadratic_damping"}, damping);
   ASSERT_THAT(wrong.found.final.model.added, ElementsAre("supply_droop"));
   ASSERT_THAT(right.found.final.model.added, ElementsAre("quadratic_damping"));
-  const InnovationStage stage = settled(wrong.context, first_stage(wrong.context), {}, 1, {});
+  const InnovationStage stage =
+      settled(wrong.context, first_stage(wrong.context), {}, Settling::once, {});
   EXPECT_FALSE(is_clearly_likelier(wrong.context, stage, stage, {}));
   EXPECT_FALSE(is_clearly_likelier(wrong.context, wrong.found.final, stage, {}));
   InnovationStage alone = stage;

@@ -71,7 +71,8 @@ TEST(ForcePlace, IsReconsideredOnceTheResonanceIsFound) {
   disturbance::NoiseModel noise;
   noise.noise = {.disturbance_sd = 2.0, .corner_Hz = 2.0, .walk_m = 1e-8, .sensor_m = 2e-6};
   noise.force_place = 0.0;
-  InnovationStage stage = settled(context, first_stage(context), noise, 1, SimulationWidth{});
+  InnovationStage stage =
+      settled(context, first_stage(context), noise, Settling::once, SimulationWidth{});
   ASSERT_EQ(stage.noise.force_place, 0.0);
   const double before = stage.minus_two_log;
   reconsider_second_mass(context, stage);

@@ -16,12 +16,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kSamples = 240;
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNoPrior = std::numeric_limits<double>::infinity();
 
 /// Three parameters, the last without a prior; numbers that are the same everywhere.
 greybox::FitSummary example() {
   greybox::FitSummary fitted;
-  for (const double sd : {0.02, 0.3, kNone}) {
+  for (const double sd : {0.02, 0.3, kNoPrior}) {
     greybox::FreeParameter p;
     p.prior_sd = sd;
     p.prior_mean = std::isfinite(sd) ? 0.7 * sd : 0.0;
@@ -119,7 +119,7 @@ TEST(Projection, GivesNoStrengthToASignatureThatCannotBeTold) {
 
 TEST(Projection, TakesFromASignatureWhatTheParametersCanImitate) {
   greybox::FitSummary fitted = example();
-  for (greybox::FreeParameter& p : fitted.parameters) p.prior_sd = kNone;
+  for (greybox::FreeParameter& p : fitted.parameters) p.prior_sd = kNoPrior;
   const Projection projection(fitted, VectorXd::Ones(kSamples));
   const VectorXd own_m = 1e-6 * VectorXd::Random(kSamples);
   const VectorXd beyond_m = projection.beyond(own_m + 0.4 * fitted.jacobian.col(0));

@@ -19,11 +19,11 @@ SearchContext short_record(std::size_t seed) {
 }
 
 InnovationStage settled_once(const SearchContext& context, const ModelStage& from) {
-  return settled(context, from, {}, 1, SimulationWidth{});
+  return settled(context, from, {}, Settling::once, SimulationWidth{});
 }
 
 std::string key_of(const SearchContext& context, const ModelStage& from) {
-  return SettledMemo::key_of(context, from, {}, {});
+  return SettledMemo::key_of(context, from, {}, Settling::once, {});
 }
 
 void expect_same(const InnovationStage& one, const InnovationStage& other) {
@@ -57,7 +57,7 @@ TEST(SettledMemo, ServesAContextWithOtherCandidates) {
   SearchContext other = context;
   other.memo = std::make_shared<SettledMemo>();
   other.problem.candidate_effects.clear();
-  other.memo->keep(key_of(context, first), 1, {marked, 1, false});
+  other.memo->keep(key_of(context, first), marked);
   const InnovationStage found = settled_once(other, first);
   EXPECT_EQ(found.minus_two_log, marked.minus_two_log);
   EXPECT_TRUE(found.context.problem.candidate_effects.empty());
@@ -82,44 +82,16 @@ TEST(SettledMemo, DropsWhatWasNotAskedForTheLongest) {
   const ModelStage first = first_stage(context);
   const InnovationStage stage = settled_once(context, first);
   SettledMemo large;
-  large.keep("a", 1, {stage, 1, true});
+  large.keep("a", stage);
   SettledMemo memo(large.size_bytes() * 5 / 2);
-  memo.keep("a", 1, {stage, 1, true});
-  memo.keep("b", 1, {stage, 1, true});
-  EXPECT_TRUE(memo.find(context, "a", 1));
-  memo.keep("c", 1, {stage, 1, true});
-  EXPECT_TRUE(memo.find(context, "a", 1));
-  EXPECT_FALSE(memo.find(context, "b", 1));
-  EXPECT_TRUE(memo.find(context, "c", 1));
+  memo.keep("a", stage);
+  memo.keep("b", stage);
+  EXPECT_TRUE(memo.find(context, "a"));
+  memo.keep("c", stage);
+  EXPECT_TRUE(memo.find(context, "a"));
+  EXPECT_FALSE(memo.find(context, "b"));
+  EXPECT_TRUE(memo.find(context, "c"));
   EXPECT_EQ(memo.size_bytes(), 2 * large.size_bytes());
-}
-
-// A stage that has converged is that of any larger number of turns; a single turn is another fit.
-TEST(SettledMemo, ServesMoreTurnsWhereAStageHasConverged) {
-  const SearchContext context = short_record(17);
-  const InnovationStage stage = settled_once(context, first_stage(context));
-  SettledMemo memo;
-  memo.keep("converged", 5, {stage, 3, true});
-  EXPECT_TRUE(memo.find(context, "converged", 25));
-  EXPECT_TRUE(memo.find(context, "converged", 3));
-  EXPECT_FALSE(memo.find(context, "converged", 2));
-  EXPECT_FALSE(memo.find(context, "converged", 1));
-  memo.keep("cut off", 5, {stage, 5, false});
-  EXPECT_TRUE(memo.find(context, "cut off", 5));
-  EXPECT_FALSE(memo.find(context, "cut off", 25));
-  memo.keep("single", 1, {stage, 1, true});
-  EXPECT_TRUE(memo.find(context, "single", 1));
-  EXPECT_FALSE(memo.find(context, "single", 5));
-}
-
-// The turns that a search asks for first, and more of them later.
-TEST(SettledMemo, GivesWhatMoreTurnsLeadTo) {
-  SearchContext context = short_record(17);
-  const ModelStage first = first_stage(context);
-  const InnovationStage anew = settled(context, first, {}, 25, SimulationWidth{});
-  context.memo = std::make_shared<SettledMemo>();
-  (void)settled(context, first, {}, kMostTurns, SimulationWidth{});
-  expect_same(settled(context, first, {}, 25, SimulationWidth{}), anew);
 }
 
 // A candidate that is declared and not used changes nothing.
@@ -137,8 +109,9 @@ TEST(SettledMemo, KnowsAStageByWhatItFollowsFrom) {
   other.problem.model.declare(law, "test");
   EXPECT_EQ(key_of(other, first), key);
 
-  EXPECT_NE(SettledMemo::key_of(context, first, {}, wide(2)), key);
-  EXPECT_EQ(SettledMemo::key_of(context, first, {}, {1, 2}), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, {}, Settling::fully, {}), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, {}, Settling::once, wide(2)), key);
+  EXPECT_EQ(SettledMemo::key_of(context, first, {}, Settling::once, {1, 2}), key);
   ModelStage moved = first;
   moved.fitted.theta[0] += 1e-12;
   EXPECT_NE(key_of(context, moved), key);
@@ -147,7 +120,7 @@ TEST(SettledMemo, KnowsAStageByWhatItFollowsFrom) {
   EXPECT_NE(key_of(context, moved), key);
   disturbance::NoiseModel noise;
   noise.lines.push_back({disturbance::LineSite::force, 20.0});
-  EXPECT_NE(SettledMemo::key_of(context, first, noise, {}), key);
+  EXPECT_NE(SettledMemo::key_of(context, first, noise, Settling::once, {}), key);
   moved = first;
   moved.added.emplace_back("friction");
   EXPECT_NE(key_of(context, moved), key);

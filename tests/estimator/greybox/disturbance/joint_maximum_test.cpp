@@ -1,0 +1,109 @@
+// The joint maximum of parameters and noise model, against the likelihood of its neighbours as
+// minus_two_log_likelihood() has it, which shares no code with the search.
+#include "estimator/greybox/disturbance/joint_maximum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/schema/document.h"
+#include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/structure_search.h"
+#include "tests/workbench/diagnose/two_masses.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using selection::InnovationStage;
+using selection::SearchContext;
+
+constexpr two_masses::Rig kRig{.resonance_Hz = 17.0,
+                               .at_load = true,
+                               .sample_rate_Hz = 500.0,
+                               .duration_s = 6.0,
+                               .kp_V_per_m = 100.0,
+                               .kd_V_s_per_m = 6.0,
+                               .second_disturbance_N = 2.0};
+
+SearchContext context() {
+  const plant_sim::ModelFile model = plant_sim::read_model(config::schema::Document::parse(
+      "schema_version = 1\nname = \"axis\"\nplant = \"force_driven_axis\"\n[parameters]\n"
+      "mass_kg = 33.0\ndamping_N_s_per_m = 150.0\ngain_N_per_V = 40.0\n"
+      "[effects.second_mass]\nmass_ratio = 0.4\nresonance_Hz = 16.6\ndamping_ratio = 0.02\n"
+      "sensor_ratio = 1.0\n",
+      "axis"));
+  config::record::Record record = two_masses::record(kRig);
+  record.name = "two masses";
+  record.sample_time_s = 1.0 / kRig.sample_rate_Hz;
+  return {selection::make_problem(model, fit_dataset({dataset_of(record)}, {})), {}};
+}
+
+/// -2 log posterior with the predictor that follows the parameters.
+double cost(const SearchContext& plain, const InnovationStage& stage, const Eigen::VectorXd& theta,
+            const NoiseModel& noise) {
+  FitSummary at = stage.model.fitted;
+  at.theta = theta;
+  const Linearisations linear = linearise(plain.problem.model, stage.context.problem.data,
+                                          at.parameters, theta, noise.force_place);
+  return prior_cost(at) + minus_two_log_likelihood(plain.problem.model, plain.problem.data,
+                                                   at.parameters, theta, linear, noise);
+}
+
+TEST(JointMaximum, NoNeighbourIsLikelier) {
+  const SearchContext plain = context();
+  const InnovationStage stage = settled(plain, selection::first_stage(plain), {},
+                                        selection::Settling::fully, SimulationWidth{});
+  const FitSummary& fitted = stage.model.fitted;
+  const double least = cost(plain, stage, fitted.theta, stage.noise);
+  EXPECT_NEAR(least, stage.minus_two_log, 0.2);
+  for (Eigen::Index i = 0; i < fitted.theta.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
+    for (const double by : {-0.03, 0.03}) {
+      Eigen::VectorXd theta = fitted.theta;
+      theta[i] = std::clamp(theta[i] + by, p.lower, p.upper);
+      EXPECT_GT(cost(plain, stage, theta, stage.noise), least - 0.2) << p.name << ' ' << by;
+    }
+  }
+  for (Eigen::Index i = 0; i < SearchPoint::RowsAtCompileTime; ++i) {
+    for (const double by : {-0.1, 0.1}) {
+      NoiseModel noise = stage.noise;
+      SearchPoint point = point_of(noise.noise);
+      point[i] += by;
+      noise.noise = noise_of(point);
+      EXPECT_GT(cost(plain, stage, fitted.theta, noise), least - 0.2) << i << ' ' << by;
+    }
+  }
+}
+
+// Frozen gains end short of it: the mass and its share are pulled to what the gains had followed.
+TEST(JointMaximum, IsLikelierThanAFitWithFrozenGains) {
+  const SearchContext plain = context();
+  InnovationStage stage = settled(plain, selection::first_stage(plain), {},
+                                  selection::Settling::once, SimulationWidth{});
+  const double frozen = stage.minus_two_log;
+  const JointMaximum found =
+      joint_maximum(plain.problem.model, stage.context.problem.data, stage.model.fitted.parameters,
+                    stage.model.fitted.theta, stage.noise, 1, {});
+  stage.model.fitted.theta = found.theta;
+  stage.noise = found.noise;
+  take_own_predictor(plain, stage);
+  EXPECT_LT(stage.minus_two_log, frozen - 1.0);
+}
+
+TEST(JointMaximum, IsTheSameForAnyNumberOfThreads) {
+  const SearchContext plain = context();
+  const InnovationStage stage = settled(plain, selection::first_stage(plain), {},
+                                        selection::Settling::once, SimulationWidth{});
+  const auto found = [&](unsigned threads) {
+    return joint_maximum(plain.problem.model, stage.context.problem.data,
+                         stage.model.fitted.parameters, stage.model.fitted.theta, stage.noise,
+                         threads, {});
+  };
+  const JointMaximum one = found(1);
+  const JointMaximum several = found(3);
+  EXPECT_EQ(one.theta, several.theta);
+  EXPECT_EQ(one.noise.noise.sensor_m, several.noise.noise.sensor_m);
+}
+
+}  // namespace
+}  // namespace estimator::greybox::disturbance
