@@ -280,17 +280,20 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
+enum class CommandTimes { as_logged, may_lead };
+
 /// Seeks effects from the first on, then what else explains the record. `context` may get another
 /// command or wider ranges.
 void seek_effects(SearchContext& context, SearchContext search, SearchStart start,
-                  Diagnosis& result) {
+                  CommandTimes times, Diagnosis& result) {
   continue_search(search, start);
-  result.command_lead_samples = take_command_lead(context, search, start);
-  if (widen_file_values(search, start, context.problem)) search = for_search(context);
   if (start.branch.stage.added.size() > 1 &&
       leaves_physics_to_simulations(search, start.branch.stage)) {
     prefer_pair(search, start);
   }
+  if (times == CommandTimes::may_lead)
+    result.command_lead_samples = take_command_lead(context, search, start);
+  if (widen_file_values(search, start, context.problem)) search = for_search(context);
   const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
@@ -316,59 +319,13 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   }
 }
 
+/// True where a delay takes back much of the command's lead: then the log is not at fault.
+bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
+  const double lead_s = result.command_lead_samples * data.sample_time_s;
+  return lead_s > 0.0 && result.final.value(kTransportDelay) > kUndone * lead_s;
+}
+
 }  // namespace
-
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::nothing_missing:
-      return "nothing_missing";
-    case Verdict::missing:
-      return "missing";
-    case Verdict::undetermined:
-      return "undetermined";
-    case Verdict::learned:
-      return "learned";
-    case Verdict::changing:
-      return "changing";
-    case Verdict::unexplained:
-      return "unexplained";
-    case Verdict::not_excited:
-      break;
-  }
-  return "not_excited";
-}
-
-std::vector<std::string> Diagnosis::established() const {
-  std::vector<std::string> names = missing;
-  std::erase_if(names, [&](const std::string& name) {
-    return std::any_of(possible.begin(), possible.end(),
-                       [&](const PossibleEffect& one) { return one.effect == name; }) ||
-           std::any_of(laws.begin(), laws.end(),
-                       [&](const Law& law) { return law.effect.name == name; });
-  });
-  return names;
-}
-
-bool Diagnosis::rests_on_one_of(const std::vector<std::string>& names) const {
-  if (verdict != Verdict::unexplained && verdict != Verdict::missing) return true;
-  const std::vector<std::string> sure = established();
-  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-    return std::find(sure.begin(), sure.end(), name) != sure.end();
-  });
-}
-
-double Diagnosis::disturbed_floor_m() const {
-  return disturbance ? std::hypot(noise_floor_m, disturbance->rms_m) : noise_floor_m;
-}
-
-bool Diagnosis::repetitions_set_floor() const {
-  return repetition && repetition->scatter_m > disturbed_floor_m() &&
-         repetition->scatter_m < rms_after_m;
-}
-
-double Diagnosis::floor_m() const {
-  return repetitions_set_floor() ? repetition->scatter_m : disturbed_floor_m();
-}
 
 Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
@@ -389,7 +346,15 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
   if (!explain_beyond_effects(search, start.first, start.branch.stage, result)) {
-    seek_effects(context, std::move(search), std::move(start), result);
+    const Diagnosis before = result;
+    const SearchContext as_logged = context;
+    seek_effects(context, std::move(search), std::move(start), CommandTimes::may_lead, result);
+    if (delay_undoes_lead(result, context.problem.data) && !context.cancelled()) {
+      result = before;
+      context = as_logged;
+      search = for_search(context);
+      seek_effects(context, search, start_search(search), CommandTimes::as_logged, result);
+    }
   }
   weigh_doubts(result);
   result.runtime_s =
