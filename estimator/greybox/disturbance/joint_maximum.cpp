@@ -60,24 +60,40 @@ class FollowingPredictors {
   }
 
  private:
-  /// Also takes the predictors' gains.
+  /// Also takes the predictors' gains. Points that differ in their noise alone share what is
+  /// linearised.
   VectorXd log_determinants(const MatrixXd& points) {
+    const Index own = points.rows() - kNoise;
+    std::vector<std::vector<Index>> alike;
+    for (Index column = 0; column < points.cols(); ++column) {
+      const auto same = std::find_if(alike.begin(), alike.end(), [&](const auto& columns) {
+        return points.col(columns.front()).head(own) == points.col(column).head(own);
+      });
+      if (same == alike.end()) {
+        alike.push_back({column});
+      } else {
+        same->push_back(column);
+      }
+    }
     const std::size_t records = runs_.size();
-    const auto columns = static_cast<std::size_t>(points.cols());
-    gains_.assign(records, std::vector<InnovationGains>(columns));
+    gains_.assign(records, std::vector<InnovationGains>(static_cast<std::size_t>(points.cols())));
     MatrixXd each(points.cols(), static_cast<Index>(records));
-    in_parallel(records * columns, threads_, [&](std::size_t k) {
+    in_parallel(records * alike.size(), threads_, [&](std::size_t k) {
       const std::size_t r = k % records;
-      const auto column = static_cast<Index>(k / records);
+      const std::vector<Index>& columns = alike[k / records];
       const Dataset& record = data_.records[r];
-      const Linearisation model =
-          linearise(model_, record, parameters_, points.col(column).head(points.rows() - kNoise),
-                    force_place_);
-      KalmanGains kalman = kalman_gains(model, record, noise_of(points.col(column).tail<kNoise>()),
-                                        data_.noise_floor_m);
-      kalman.gains.line_m = record.innovations->line_m;
-      gains_[r][k / records] = std::move(kalman.gains);
-      each(column, static_cast<Index>(r)) = kalman.log_determinant;
+      std::vector<NoiseParameters> noise;
+      for (const Index column : columns)
+        noise.push_back(noise_of(points.col(column).tail<kNoise>()));
+      std::vector<KalmanGains> kalman =
+          kalman_gains(linearise(model_, record, parameters_, points.col(columns.front()).head(own),
+                                 force_place_),
+                       record, noise, data_.noise_floor_m);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        kalman[i].gains.line_m = record.innovations->line_m;
+        gains_[r][static_cast<std::size_t>(columns[i])] = std::move(kalman[i].gains);
+        each(columns[i], static_cast<Index>(r)) = kalman[i].log_determinant;
+      }
     });
     return each.rowwise().sum();
   }
