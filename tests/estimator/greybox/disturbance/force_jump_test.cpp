@@ -13,8 +13,8 @@ namespace {
 
 ForceJump jump_in(const std::string& spec, std::size_t seed) {
   const selection::SearchContext context = diagnose_test::context_of(spec, seed);
-  const selection::InnovationStage stage =
-      selection::settled(context, selection::first_stage(context), {}, selection::Settling::fully, {});
+  const selection::InnovationStage stage = selection::settled(
+      context, selection::first_stage(context), {}, selection::Settling::fully, {});
   const Dataset& record = stage.context.problem.data.records.front();
   return likeliest_jump(stage.linear.front(), record, *record.innovations,
                         stage.model.fitted.residual_m, context.problem.data.noise_floor_m);
