@@ -201,7 +201,9 @@ std::string fall_words(const selection::Diagnosis& d) {
   const std::string before = config::units::length_words(d.rms_before_m);
   const std::string after = config::units::length_words(d.rms_after_m);
   const std::string course = d.rms_after_m < d.rms_before_m ? "falls" : "goes";
+  const bool rises = d.prediction && d.rms_after_m > d.rms_before_m && before != after;
   return with + " held-out error " +
+         (rises ? "of a simulation, which holds the disturbance, " : "") +
          (before == after ? "stays at " + after : course + " from " + before + " to " + after) +
          (d.rms_after_m < d.floor_m() ? ", within " + floor_name(d) + ", "
                                       : "; " + floor_name(d) + " is ") +
@@ -225,7 +227,7 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
   for (const selection::ParameterValue& p : d.parameters) {
     const bool own = p.name.find('.') == std::string::npos;
     if (own && p.at_bound && p.value != 0.0) at_bound.push_back(p.name);
-    if (std::abs(p.prior_sds) < kFar_sds) continue;
+    if (std::abs(p.prior_sds) < kFar_sds || was_added(d, p.name)) continue;
     out.push_back(fmt::format(
         "{} ends {:.1f} standard deviations of its prior {} the file's value: the file is wrong "
         "about it, or something that acts as it does is missing.",

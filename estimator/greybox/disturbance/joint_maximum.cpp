@@ -83,6 +83,7 @@ class FollowingPredictors {
       const std::vector<Index>& columns = alike[k / records];
       const Dataset& record = data_.records[r];
       std::vector<NoiseParameters> noise;
+      noise.reserve(columns.size());
       for (const Index column : columns)
         noise.push_back(noise_of(points.col(column).tail<kNoise>()));
       std::vector<KalmanGains> kalman =

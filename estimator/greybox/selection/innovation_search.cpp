@@ -22,8 +22,8 @@ constexpr int kMostExchanges = 2;
 /// has to gain more. Lines are nearly exact: their frequencies are tuned, what they move simulated.
 constexpr double kInexact = 0.005;
 constexpr double kInexactLines = 0.0005;
-/// Lag of another search's model after one turn of noise model and parameters that further turns,
-/// which gain some tens, do not make up for.
+/// Lag of another search's model, settled once, that settling it fully, which gains some tens, does
+/// not make up for.
 constexpr double kOutOfReach_nats = 200.0;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;

@@ -49,6 +49,25 @@ TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
                                          "noise floor is 2.4 um."));
 }
 
+TEST(Words, APredictionShowsWhatASimulationUnderDisturbanceHides) {
+  ExampleReport outcome;
+  outcome.diagnosis.by_innovations = true;
+  outcome.diagnosis.rms_after_m = 31e-6;
+  outcome.diagnosis.prediction = selection::PredictionErrors{28.1e-6, 2.82e-6};
+  EXPECT_THAT(remarks(outcome),
+              Contains("The held-out error of a simulation, which holds the disturbance, goes from "
+                       "26.3 um to 31 um; the noise floor is 2.4 um. One sample ahead, predictions "
+                       "are off by 28.1 um without and by 2.82 um with friction."));
+}
+
+TEST(Words, APriorOfAnEffectThatWasAddedIsNoValueOfTheFile) {
+  ExampleReport outcome;
+  selection::ParameterValue& friction = outcome.diagnosis.parameters.back();
+  ASSERT_TRUE(was_added(outcome.diagnosis, friction.name));
+  friction.prior_sds = 3.0;
+  EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("standard deviations of its prior"))));
+}
+
 TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
   ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
