@@ -6,8 +6,9 @@
 //
 // yl  what spectral lines known so far move the reading by: the gains were computed without them
 // x  states of the plant (of a second mass too: correcting its offset z leaves the reading), F
-// process disturbance (a force, or a speed where the plant has no force). The gains are frozen:
-// every candidate model is simulated with those of the model that it extends.
+// process disturbance (a force, or a speed where the plant has no force). A fit of
+// candidates freezes the gains of the model that they extend; in joint_maximum() and for standard
+// errors they follow the parameters.
 #pragma once
 
 #include <Eigen/Core>

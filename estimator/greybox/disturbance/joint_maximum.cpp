@@ -27,7 +27,8 @@ constexpr Index kNoise = SearchPoint::RowsAtCompileTime;
 ///   sqrt(n + log det - log det at the start),   n valid samples
 ///
 /// whose square is the likelihood's second term, and whose slope together with that of the scales
-/// makes R'R the expected information.
+/// makes R'R the expected information of a stationary filter. A point with log det lower by more
+/// than n, noise too small by a factor e, is no step that the search takes at once.
 class FollowingPredictors {
  public:
   FollowingPredictors(const plant_sim::ModelFile& model, const FitDataset& data,

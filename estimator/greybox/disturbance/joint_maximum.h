@@ -20,7 +20,9 @@ struct JointMaximum {
   NoiseModel noise;
 };
 
-/// From `theta` and `noise`, from which the innovations of `data` must come; the lines stay.
+/// The maximum that is nearest to `theta` and `noise`, from which the innovations of `data` must
+/// come. The lines stay, and what they move is projected out as it was at the start: the likelihood
+/// at the maximum is the caller's to take.
 [[nodiscard]] JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& data,
                                          const std::vector<FreeParameter>& parameters,
                                          const Eigen::VectorXd& theta, const NoiseModel& noise,

@@ -84,6 +84,7 @@ struct NoiseEstimate {
 /// the intensity alone is seen.
 [[nodiscard]] SearchPoint point_of(const NoiseParameters& noise);
 [[nodiscard]] NoiseParameters noise_of(const SearchPoint& point);
+/// Bounds of the search, which keep a missing effect from passing as noise without limit.
 [[nodiscard]] SearchBounds noise_bounds(const Linearisations& models, const FitDataset& data);
 
 /// Fall of -2 log L below which a step of the search for a noise model is its last.

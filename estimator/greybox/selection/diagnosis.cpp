@@ -37,7 +37,8 @@ constexpr double kPeriodsOfDrift = 4.0;
 /// Share of the error from which on another beginning of the search leaves far less.
 constexpr double kFarLess = 0.5;
 
-constexpr const char* kTransportDelay = "transport_delay.delay_s";
+constexpr const char* kTransportDelay = "transport_delay";
+constexpr const char* kDelay = "transport_delay.delay_s";
 /// Share of the command's lead from which on a delay takes it back.
 constexpr double kUndone = 0.5;
 
@@ -280,6 +281,7 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
+/// Whether a command may act before the sample at which it is logged.
 enum class CommandTimes { as_logged, may_lead };
 
 /// Seeks effects from the first on, then what else explains the record. `context` may get another
@@ -322,7 +324,9 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
 /// True where a delay takes back much of the command's lead: then the log is not at fault.
 bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
   const double lead_s = result.command_lead_samples * data.sample_time_s;
-  return lead_s > 0.0 && result.final.value(kTransportDelay) > kUndone * lead_s;
+  const std::vector<std::string>& added = result.missing;
+  return lead_s > 0.0 && std::find(added.begin(), added.end(), kTransportDelay) != added.end() &&
+         result.final.value(kDelay) > kUndone * lead_s;
 }
 
 }  // namespace

@@ -191,9 +191,9 @@ class RoundTrials {
       const std::size_t i = contenders[k];
       if (plain_.cancelled()) return;
       polished_[i] = 1;
-      InnovationStage turned =
+      InnovationStage polished =
           settled(plain_, stages_[i].model, stages_[i].noise, Settling::fully, width);
-      if (turned.minus_two_log < stages_[i].minus_two_log) take(i, std::move(turned));
+      if (polished.minus_two_log < stages_[i].minus_two_log) take(i, std::move(polished));
     });
   }
 

@@ -39,8 +39,8 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   const SimulationWidth width = wide(context.options.threads);
   InnovationStage other = settled(context, held, stage.noise, Settling::once, width);
   if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return;
-  InnovationStage turned = settled(context, other.model, other.noise, Settling::fully, width);
-  if (penalised(turned) < penalised(other)) other = std::move(turned);
+  InnovationStage polished = settled(context, other.model, other.noise, Settling::fully, width);
+  if (penalised(polished) < penalised(other)) other = std::move(polished);
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   if (!effect_out_of_range(other).empty()) return;
   InnovationCandidate candidate;

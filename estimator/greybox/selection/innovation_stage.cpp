@@ -39,13 +39,13 @@ constexpr double kRevived = 2.0;
 constexpr double kPerRefinement = 6.0;
 /// Fall of -2 log L by a step of a trial's noise model below which it is the last.
 constexpr double kLastTrialNoiseStep = 1.0;
-/// Turns of noise model and parameters before both are sought together, which finds the maximum
-/// from where no start elsewhere leads to another.
+/// Turns of noise model and parameters before the search for both together, which finds the nearest
+/// maximum alone.
 constexpr int kTurns = 2;
-/// Searches for both together, the frequencies of lines tuned between them, and the fall of
-/// -2 log L below which another one is of no use.
+/// Searches for both together, the frequencies of lines tuned between them.
 constexpr int kMostJoint = 2;
-constexpr double kSettled = 1.0;
+/// Fall of -2 log L by one search for both from which on another is worth its time.
+constexpr double kWorthAnother = 5.0;
 
 /// Starts with a wider and a narrower play: between widths that make contact at other reversals,
 /// the likelihood has several maxima.
@@ -83,6 +83,18 @@ double distance(const FitSummary& fitted, const FitSummary& other, double floor_
     if (std::isfinite(sd)) rise += std::pow(by[static_cast<Eigen::Index>(i)] / sd, 2);
   }
   return rise;
+}
+
+void update_waves(InnovationStage& stage) {
+  disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
+                            stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,
+                            stage.noise);
+}
+
+void tune_frequencies(InnovationStage& stage) {
+  disturbance::tune_frequencies(stage.context.problem.model, stage.context.problem.data,
+                                stage.model.fitted.parameters, stage.model.fitted.theta,
+                                stage.linear, stage.noise);
 }
 
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
@@ -132,9 +144,7 @@ void refit(const SearchContext& plain, InnovationStage& stage,
     try_other(rest, kRevived - kPerRefinement * fewer);
   }
   stage.model.fitted = std::move(fitted);
-  disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
-                            stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,
-                            stage.noise);
+  update_waves(stage);
   take_own_predictor(plain, stage);
 }
 
@@ -148,6 +158,10 @@ void maximise_jointly(const SearchContext& plain, InnovationStage& stage, unsign
   moved.model.fitted.theta = std::move(found.theta);
   moved.noise = std::move(found.noise);
   take_own_predictor(plain, moved);
+  if (!moved.noise.lines.empty()) {
+    update_waves(moved);
+    take_own_predictor(plain, moved);
+  }
   if (!(moved.minus_two_log < stage.minus_two_log)) return;
   // with frozen gains: the innovations are orthogonal to these slopes as to those of other effects
   const ParameterSubset all = subset(moved.model.fitted, [](const auto&) { return true; });
@@ -188,7 +202,7 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
                            : trial                       ? kTrialIterations
                                                          : kIterations;
   options.tolerance = quick ? kQuickTolerance : trial ? kTrialTolerance : kTolerance;
-  options.passes = quick ? 1 : 2;
+  options.passes = quick || effort == InnovationFit::none ? 1 : 2;
   options.final_jacobian = !quick;
   options.cancel = context.options.cancel;
   options.width = width;
@@ -230,10 +244,6 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
                                     fully ? disturbance::kLastNoiseStep : kLastTrialNoiseStep)
             .noise;
   };
-  const auto tune_frequencies = [&](InnovationStage& of) {
-    disturbance::tune_frequencies(file, of.context.problem.data, of.model.fitted.parameters,
-                                  of.model.fitted.theta, of.linear, of.noise);
-  };
   linearise(plain.problem.data);
   if (disturbance::has_play(file, fitted.parameters, fitted.theta)) {
     estimate_noise();
@@ -250,9 +260,15 @@ InnovationStage settled_anew(const SearchContext& plain, ModelStage model,
     if (penalised(stage) < penalised(best)) best = stage;
   }
   for (int i = 0; i < (fully ? kMostJoint : 0) && !plain.cancelled(); ++i) {
+    if (i > 0 && !best.noise.lines.empty()) {
+      InnovationStage tuned = best;
+      tune_frequencies(tuned);
+      take_own_predictor(plain, tuned);
+      if (tuned.minus_two_log < best.minus_two_log) best = std::move(tuned);
+    }
     const double before = best.minus_two_log;
     maximise_jointly(plain, best, width.threads);
-    if (!(best.minus_two_log < before - kSettled)) break;
+    if (!(best.minus_two_log < before - kWorthAnother)) break;
   }
   return best;
 }
