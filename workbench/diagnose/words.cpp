@@ -200,11 +200,12 @@ std::string fall_words(const selection::Diagnosis& d) {
                                : "The";
   const std::string before = config::units::length_words(d.rms_before_m);
   const std::string after = config::units::length_words(d.rms_after_m);
-  const std::string course = d.rms_after_m < d.rms_before_m ? "falls" : "goes";
-  const bool rises = d.prediction && d.rms_after_m > d.rms_before_m && before != after;
+  const bool falls = d.rms_after_m < d.rms_before_m;
+  const std::string course = (falls ? "falls from " : "goes from ") + before + " to " + after;
+  const bool held = d.prediction && !falls;
   return with + " held-out error " +
-         (rises ? "of a simulation, which holds the disturbance, " : "") +
-         (before == after ? "stays at " + after : course + " from " + before + " to " + after) +
+         (held ? "of a simulation, which holds the disturbance, " : "") +
+         (before == after ? "stays at " + after : course) +
          (d.rms_after_m < d.floor_m() ? ", within " + floor_name(d) + ", "
                                       : "; " + floor_name(d) + " is ") +
          config::units::length_words(d.floor_m()) + "." + prediction_words(d);

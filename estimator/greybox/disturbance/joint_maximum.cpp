@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 
 constexpr int kIterations = 12;
 constexpr double kTolerance = 1e-5;
-constexpr double kNoiseStep = 1e-2;  ///< of logarithms
+/// Difference step of the noise parameters, which are logarithms.
+constexpr double kNoiseStep = 1e-2;
 constexpr Index kNoise = SearchPoint::RowsAtCompileTime;
 
 /// Innovations of predictors that follow each column of (theta, noise point), each scaled by its

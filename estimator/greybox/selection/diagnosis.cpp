@@ -281,7 +281,7 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
-/// Whether a command may act before the sample at which it is logged.
+/// A command acts at the sample at which it is logged, or may act before.
 enum class CommandTimes { as_logged, may_lead };
 
 /// Seeks effects from the first on, then what else explains the record. `context` may get another

@@ -1,5 +1,5 @@
-// Errors of predictions by one sample: on a disturbed rig they show what is missing, as the errors
-// of simulations, which hold the disturbance, hardly do.
+// Errors of predictions by one sample: on a disturbed rig they show what is missing. Simulations,
+// whose errors hold the disturbance, hardly do.
 #pragma once
 
 #include <optional>

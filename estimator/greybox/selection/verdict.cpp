@@ -1,4 +1,4 @@
-// What follows from the parts of a diagnosis.
+// A diagnosis read as a whole: its verdict in words of the JSON, what is established, its floors.
 #include <algorithm>
 #include <cmath>
 
