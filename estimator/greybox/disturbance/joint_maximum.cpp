@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/disturbance/following_gains.h"
 #include "estimator/greybox/fit.h"
 #include "estimator/nonlinear/minimize.h"
 #include "estimator/parallel.h"
@@ -20,7 +21,6 @@ constexpr int kIterations = 12;
 constexpr double kTolerance = 1e-5;
 /// Difference step of the noise parameters, which are logarithms.
 constexpr double kNoiseStep = 1e-2;
-constexpr Index kNoise = SearchPoint::RowsAtCompileTime;
 
 /// Innovations of predictors that follow each column of (theta, noise point), each scaled by its
 /// own predictor, and a last row
@@ -35,10 +35,8 @@ class FollowingPredictors {
   FollowingPredictors(const plant_sim::ModelFile& model, const FitDataset& data,
                       const std::vector<FreeParameter>& parameters, double force_place,
                       unsigned threads)
-      : model_(model),
-        data_(data),
-        parameters_(parameters),
-        force_place_(force_place),
+      : data_(data),
+        following_(model, data, parameters, force_place, threads),
         threads_(threads),
         valid_(data.training_mask.sum()) {
     for (const Dataset& record : data.records) runs_.emplace_back(model, record, parameters);
@@ -51,7 +49,8 @@ class FollowingPredictors {
     residuals_m.resize(data_.size() + 1, points.cols());
     in_parallel(runs_.size(), threads_, [&](std::size_t r) {
       MatrixXd innovations_m;
-      runs_[r].innovations(points.topRows(points.rows() - kNoise), gains_[r], innovations_m);
+      runs_[r].innovations(points.topRows(points.rows() - kNoiseCoordinates), gains_[r],
+                           innovations_m);
       const MatrixXd& lines = data_.records[r].innovations->lines;
       if (lines.cols() > 0) innovations_m -= lines * (lines.transpose() * innovations_m).eval();
       residuals_m.middleRows(static_cast<Index>(data_.starts[r]), innovations_m.rows()) =
@@ -62,49 +61,23 @@ class FollowingPredictors {
   }
 
  private:
-  /// Also takes the predictors' gains. Points that differ in their noise alone share what is
-  /// linearised.
+  /// Also takes the predictors' gains.
   VectorXd log_determinants(const MatrixXd& points) {
-    const Index own = points.rows() - kNoise;
-    std::vector<std::vector<Index>> alike;
-    for (Index column = 0; column < points.cols(); ++column) {
-      const auto same = std::find_if(alike.begin(), alike.end(), [&](const auto& columns) {
-        return points.col(columns.front()).head(own) == points.col(column).head(own);
-      });
-      if (same == alike.end()) {
-        alike.push_back({column});
-      } else {
-        same->push_back(column);
+    std::vector<std::vector<KalmanGains>> found = following_.at(points);
+    gains_.assign(runs_.size(), {});
+    VectorXd sum = VectorXd::Zero(points.cols());
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      for (std::size_t i = 0; i < found[r].size(); ++i) {
+        found[r][i].gains.line_m = data_.records[r].innovations->line_m;
+        gains_[r].push_back(std::move(found[r][i].gains));
+        sum[static_cast<Index>(i)] += found[r][i].log_determinant;
       }
     }
-    const std::size_t records = runs_.size();
-    gains_.assign(records, std::vector<InnovationGains>(static_cast<std::size_t>(points.cols())));
-    MatrixXd each(points.cols(), static_cast<Index>(records));
-    in_parallel(records * alike.size(), threads_, [&](std::size_t k) {
-      const std::size_t r = k % records;
-      const std::vector<Index>& columns = alike[k / records];
-      const Dataset& record = data_.records[r];
-      std::vector<NoiseParameters> noise;
-      noise.reserve(columns.size());
-      for (const Index column : columns)
-        noise.push_back(noise_of(points.col(column).tail<kNoise>()));
-      std::vector<KalmanGains> kalman =
-          kalman_gains(linearise(model_, record, parameters_, points.col(columns.front()).head(own),
-                                 force_place_),
-                       record, noise, data_.noise_floor_m);
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        kalman[i].gains.line_m = record.innovations->line_m;
-        gains_[r][static_cast<std::size_t>(columns[i])] = std::move(kalman[i].gains);
-        each(columns[i], static_cast<Index>(r)) = kalman[i].log_determinant;
-      }
-    });
-    return each.rowwise().sum();
+    return sum;
   }
 
-  const plant_sim::ModelFile& model_;
   const FitDataset& data_;
-  const std::vector<FreeParameter>& parameters_;
-  double force_place_;
+  FollowingGains following_;
   unsigned threads_;
   double valid_;
   std::vector<ObserverSimulation> runs_;
@@ -127,7 +100,7 @@ JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& 
   problem.lanes = ObserverSimulation::kLanes;
   const SearchBounds bounds =
       noise_bounds(linearise(model, data, parameters, theta, noise.force_place), data);
-  for (Index i = 0; i < kNoise; ++i) {
+  for (Index i = 0; i < kNoiseCoordinates; ++i) {
     nonlinear::Unknown unknown;
     unknown.lower = bounds.lower[i];
     unknown.upper = bounds.upper[i];
@@ -137,7 +110,7 @@ JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& 
   problem.evaluate = [&](const MatrixXd& points, MatrixXd& residuals_m) {
     predictors.evaluate(points, residuals_m);
   };
-  VectorXd start(theta.size() + kNoise);
+  VectorXd start(theta.size() + kNoiseCoordinates);
   start << theta, point_of(noise.noise).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   predictors.start_from(start);
   nonlinear::MinimizeOptions how;
@@ -151,7 +124,7 @@ JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& 
   JointMaximum result;
   result.theta = solution.x.head(theta.size());
   result.noise = noise;
-  result.noise.noise = noise_of(solution.x.tail<kNoise>());
+  result.noise.noise = noise_of(solution.x.tail<kNoiseCoordinates>());
   return result;
 }
 

@@ -64,6 +64,7 @@ Candidate candidate_of(const SearchContext& context, const InnovationCandidate& 
                        const ModelStage& before) {
   Candidate candidate;
   candidate.effects = {found.effect};
+  candidate.effects.insert(candidate.effects.end(), found.further.begin(), found.further.end());
   candidate.fitted_at_all = found.settled;
   if (!found.settled) return candidate;
   candidate.fitted = simulated(context, found.fitted);

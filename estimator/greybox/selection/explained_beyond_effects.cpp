@@ -7,6 +7,7 @@
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/learned_laws.h"
@@ -44,8 +45,11 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   const double by_laws_nats = law_nats(context, stage);
   const bool law_first = by_laws_nats > std::max(by_effects_nats, by_changes_nats);
   const bool change_first = by_changes_nats > by_effects_nats && !motion_explains_more(stage);
-  if ((!law_first && !change_first) ||
-      held_gain_nats(context, stage, held) > kFarMore * std::max(by_laws_nats, by_changes_nats)) {
+  if (!law_first && !change_first) return false;
+  const double held_nats = held_gain_nats(context, stage, held);
+  const double beyond_nats = std::max(by_laws_nats, by_changes_nats);
+  if (held_nats > kFarMore * beyond_nats ||
+      (held_nats > beyond_nats && explains_record(context, stage, held))) {
     return false;
   }
   if (law_first && learn_law_early(context, first, stage, held, result)) {

@@ -182,6 +182,8 @@ class RoundTrials {
       double lead_nats = kContends_nats;
       if (is_line && !candidate.effect.empty())
         lead_nats = std::max(lead_nats, kContendsWithLine * best_nats);
+      // of two lines the other comes next
+      if (i != best && is_line && candidate.effect.empty()) continue;
       const bool contends = candidate.gain_nats > best_nats - lead_nats;
       if (contends && candidate.settled && polished_[i] == 0) contenders.push_back(i);
     }

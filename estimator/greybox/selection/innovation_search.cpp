@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "config/schema/joined.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
@@ -32,28 +31,6 @@ constexpr std::size_t kComparedEffects = 2;
 /// Fastest speed over the RMS of the motion's.
 constexpr double kFastest = 3.0;
 
-/// The model that another search holds, where it is more likely than the stage reached.
-void take_held(const SearchContext& context, const ModelStage& held, double evidence_nats,
-               InnovationStage& stage, std::vector<InnovationRound>& rounds) {
-  if (held.added.empty() || context.cancelled()) return;
-  const SimulationWidth width = wide(context.options.threads);
-  InnovationStage other = settled(context, held, stage.noise, Settling::once, width);
-  if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return;
-  InnovationStage polished = settled(context, other.model, other.noise, Settling::fully, width);
-  if (penalised(polished) < penalised(other)) other = std::move(polished);
-  if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
-  if (!effect_out_of_range(other).empty()) return;
-  InnovationCandidate candidate;
-  candidate.effect = config::schema::joined(held.added, "+");
-  candidate.settled = true;
-  candidate.penalty_nats = 0.5 * (penalised(other) - other.minus_two_log);
-  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(other));
-  candidate.fitted = other.model.fitted;
-  candidate.fitted.jacobian.resize(0, 0);
-  rounds.push_back({stage.model, {std::move(candidate)}, true});
-  stage = std::move(other);
-}
-
 /// Nats that the lines of a search have gained, each when it was taken.
 double gained_by_lines_nats(const std::vector<InnovationRound>& rounds) {
   double sum_nats = 0.0;
@@ -71,6 +48,30 @@ double inexact_nats(const SearchContext& context, const InnovationSearch& search
   const double lines_nats = gained_by_lines_nats(search.rounds);
   return kInterpolated * context.problem.interpolated_nats +
          kInexact * std::max(0.0, all_nats - lines_nats) + kInexactLines * lines_nats;
+}
+
+/// Takes the model that another search holds, where it is more likely than the stage reached.
+bool take_held(const SearchContext& context, const ModelStage& held, double evidence_nats,
+               InnovationStage& stage, std::vector<InnovationRound>& rounds) {
+  if (held.added.empty() || context.cancelled()) return false;
+  const SimulationWidth width = wide(context.options.threads);
+  InnovationStage other = settled(context, held, stage.noise, Settling::once, width);
+  if (!(penalised(other) < penalised(stage) + 2.0 * kOutOfReach_nats)) return false;
+  InnovationStage polished = settled(context, other.model, other.noise, Settling::fully, width);
+  if (penalised(polished) < penalised(other)) other = std::move(polished);
+  if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return false;
+  if (!effect_out_of_range(other).empty()) return false;
+  InnovationCandidate candidate;
+  candidate.effect = held.added.front();
+  candidate.further.assign(held.added.begin() + 1, held.added.end());
+  candidate.settled = true;
+  candidate.penalty_nats = 0.5 * (penalised(other) - other.minus_two_log);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(other));
+  candidate.fitted = other.model.fitted;
+  candidate.fitted.jacobian.resize(0, 0);
+  rounds.push_back({stage.model, {std::move(candidate)}, true});
+  stage = std::move(other);
+  return true;
 }
 
 /// The final stage without effect `i`.
@@ -207,6 +208,20 @@ bool is_clearly_likelier(const SearchContext& with_holdouts, const InnovationSta
          std::all_of(costs.begin(), costs.end(), [&](double cost) { return enough < cost; });
 }
 
+bool explains_record(const SearchContext& with_holdouts, const InnovationStage& before,
+                     const ModelStage& held) {
+  if (held.added.empty() || with_holdouts.cancelled()) return false;
+  const SearchContext context = without_holdouts(with_holdouts);
+  InnovationSearch search;
+  search.before = before;
+  search.final =
+      settled(context, held, before.noise, Settling::once, wide(context.options.threads));
+  if (!(penalised(search.final) < penalised(before) - 2.0 * kEvidence_nats)) return false;
+  search.inexact_nats = inexact_nats(context, search, search.final);
+  weigh_remainder(context, search);
+  return !context.cancelled() && !search.physics_missing();
+}
+
 InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
                                     const SearchBranch& held, const SearchLimits& limits) {
   const SearchContext context = without_holdouts(with_holdouts);
@@ -218,13 +233,23 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::set<std::string> dropped;
+  // a held model that explains the record spares the rounds to it, the first excepted: one effect
+  // in its place comes before two
+  bool jumps = explains_record(context, stage, held.stage);
+  // more than stand in for a law would hardly be claimed
+  const auto stands_in = [&] {
+    return stage.model.added.size() >= kStandIn &&
+           leaves_much_physics(stage, inexact_nats(context, search, stage));
+  };
   const auto extend_fully = [&] {
     bool more = true;
-    while (more && !search.ended_early && !context.cancelled()) {
+    while (more && !search.ended_early && !context.cancelled() && !stands_in()) {
       if (stage.model.added.empty()) search.bare = stage;
       const RoundOptions options{Candidates::effects_and_lines, limits.most_effects,
                                  evidence_nats()};
       more = extend(context, stage, options, search.memo, search.rounds, dropped);
+      if (std::exchange(jumps, false))
+        more |= take_held(context, held.stage, evidence_nats(), stage, search.rounds);
       search.ended_early =
           more && limits.ends_at && limits.ends_at(stage, inexact_nats(context, search, stage));
     }

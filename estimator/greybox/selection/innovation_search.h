@@ -79,6 +79,12 @@ struct SearchLimits {
 [[nodiscard]] bool is_clearly_likelier(const SearchContext& context, const InnovationStage& found,
                                        const InnovationStage& stage, const ModelStage& held);
 
+/// True where `held`, the best model of a search by simulations, leaves no physics: settled once
+/// with the noise model of `before`, the model as given, it is likelier than this, and no curve
+/// over the motion explains more of the rest than inexact models may owe.
+[[nodiscard]] bool explains_record(const SearchContext& context, const InnovationStage& before,
+                                   const ModelStage& held);
+
 /// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
 /// the best that it has found: this is taken where its likelihood is the higher one. Records that
 /// only score take no part.

@@ -13,6 +13,7 @@
 #include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/revived_refinements.h"
 #include "estimator/greybox/selection/settled_memo.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 
@@ -28,10 +29,10 @@ constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
 /// Lead in -2 log L that a fit from another start does not make up for after a quick look.
 constexpr double kFarBehind = 100.0;
-/// Largest lag in -2 log L, and distance from the fit in squared standard errors, at which a quick
-/// look from another start has come to the same optimum.
+/// Deviation of a lag in -2 log L from what a fit's slopes expect, absolute and as a share, up to
+/// which a quick look from another start is on its way to the same optimum.
 constexpr double kSameOptimum = 1.0;
-constexpr double kSameParameters = 4.0;
+constexpr double kSameShape = 0.2;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
 /// ... and each parameter that one has more than the refinement whose place it takes. A shorter one
@@ -48,12 +49,15 @@ constexpr int kMostJoint = 2;
 constexpr double kWorthAnother = 5.0;
 
 /// Starts with a wider and a narrower play: between widths that make contact at other reversals,
-/// the likelihood has several maxima.
-std::vector<Eigen::VectorXd> resized_plays(const FitSummary& fitted) {
+/// the likelihood has several maxima. A trial of another effect leaves a play as it was settled.
+std::vector<Eigen::VectorXd> resized_plays(const FitSummary& fitted,
+                                           const std::vector<std::string>& added,
+                                           InnovationFit effort) {
   std::vector<Eigen::VectorXd> starts;
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
     const FreeParameter& p = fitted.parameters[i];
     if (p.name != disturbance::kPlayWidth) continue;
+    if (effort == InnovationFit::trial && !added.empty() && !belongs_to(p, added.back())) continue;
     const auto at = static_cast<Eigen::Index>(i);
     for (const double ratio : {0.5, 0.7, 1.4, 2.0}) {
       Eigen::VectorXd start = fitted.theta;
@@ -97,6 +101,65 @@ void tune_frequencies(InnovationStage& stage) {
                                 stage.linear, stage.noise);
 }
 
+/// A start beside that of a fit, and the fall of -2 log L that its fit has to bring, beside that of
+/// further refinements.
+struct OtherStart {
+  ParameterSubset start;
+  double enough = 0.0;
+};
+
+/// Fits from other starts, each after a quick look that may show that it leads nowhere.
+class OtherFits {
+ public:
+  OtherFits(const SearchContext& context, InnovationFit effort, SimulationWidth width)
+      : context_(context), effort_(effort), width_(width) {}
+
+  /// The fit, or that of another start which is likelier than it, and than those before it.
+  [[nodiscard]] FitSummary best(FitSummary fitted, const std::vector<OtherStart>& others) const {
+    std::vector<std::optional<FitSummary>> found(others.size());
+    const bool wide = width_.threads > 1 && others.size() > 1;
+    in_parallel(others.size(), wide ? width_.threads : 1, [&](std::size_t i) {
+      found[i] = fit_from(others[i].start, fitted, wide ? SimulationWidth{} : width_);
+    });
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      if (!found[i] || ends_at_least(*found[i])) continue;
+      const double more = static_cast<double>(found[i]->parameters.size()) -
+                          static_cast<double>(fitted.parameters.size());
+      if (cost(*found[i]) + kPerRefinement * more + others[i].enough < cost(fitted))
+        fitted = *std::move(found[i]);
+    }
+    return fitted;
+  }
+
+ private:
+  [[nodiscard]] std::optional<FitSummary> fit_from(ParameterSubset start, const FitSummary& fitted,
+                                                   SimulationWidth width) const {
+    if (context_.cancelled()) return {};
+    FitSummary other = fit_innovations(context_, start, width, InnovationFit::quick);
+    const double lag = cost(other) - cost(fitted);
+    if (lag > kFarBehind || is_on_the_way(fitted, other, lag)) return {};
+    start.start = other.theta;
+    return fit_innovations(context_, start, width, effort_);
+  }
+
+  /// True where the fit's slopes expect the lag: the quick look is on its way to the same optimum.
+  [[nodiscard]] bool is_on_the_way(const FitSummary& fitted, const FitSummary& other,
+                                   double lag) const {
+    if (!(lag >= 0.0)) return false;
+    const double expected = distance(fitted, other, floor_m());
+    return std::abs(expected - lag) < std::max(kSameOptimum, kSameShape * lag);
+  }
+
+  [[nodiscard]] double cost(const FitSummary& fit) const {
+    return squares(fit, floor_m()) + prior_cost(fit);
+  }
+  [[nodiscard]] double floor_m() const { return context_.problem.data.noise_floor_m; }
+
+  const SearchContext& context_;
+  InnovationFit effort_;
+  SimulationWidth width_;
+};
+
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, in a first turn, at other values too.
 void refit(const SearchContext& plain, InnovationStage& stage,
@@ -108,40 +171,26 @@ void refit(const SearchContext& plain, InnovationStage& stage,
   stage.context = with_data(plain, data.data);
   const ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   FitSummary fitted = fit_innovations(stage.context, all, width, effort);
-  const double floor_m = plain.problem.data.noise_floor_m;
-  const auto cost = [&](const FitSummary& fit) { return squares(fit, floor_m) + prior_cost(fit); };
-  const auto try_other = [&](ParameterSubset start, double enough) {
-    FitSummary other = fit_innovations(stage.context, start, width, InnovationFit::quick);
-    const double lag = cost(other) - cost(fitted);
-    if (lag > kFarBehind) return;
-    const bool near = lag >= 0.0 && lag < kSameOptimum && effort == InnovationFit::trial;
-    if (near && distance(fitted, other, floor_m) < kSameParameters) return;
-    start.start = other.theta;
-    other = fit_innovations(stage.context, start, width, effort);
-    if (cost(other) + enough < cost(fitted) && !ends_at_least(other)) fitted = std::move(other);
-  };
-  const auto try_start = [&](Eigen::VectorXd start, double enough) {
-    try_other({all.parameters, std::move(start)}, enough);
-  };
+  const OtherFits fits(stage.context, effort, width);
+  std::vector<OtherStart> others;
   if (other_start) {
-    try_start(*other_start, 0.0);
-    for (const Eigen::VectorXd& start : resized_plays(fitted)) try_start(start, 0.0);
+    others.push_back({{all.parameters, *other_start}, 0.0});
+    for (Eigen::VectorXd& start : resized_plays(fitted, stage.model.added, effort))
+      others.push_back({{all.parameters, std::move(start)}, 0.0});
   }
-  for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
+  for (Eigen::VectorXd& start : revived_refinements(fitted))
+    others.push_back({{all.parameters, std::move(start)}, kRevived});
+  fitted = fits.best(std::move(fitted), others);
   if (other_start && effort == InnovationFit::converged) {
-    const ModelStage found{stage.model.added, fitted};
-    for (const ParameterSubset& other : alternative_refinements(plain, found)) {
-      if (plain.cancelled()) break;
-      const double more = static_cast<double>(other.parameters.size()) -
-                          static_cast<double>(fitted.parameters.size());
-      try_other(other, kPerRefinement * more + kRevived);
-    }
+    others.clear();
+    for (ParameterSubset& other : alternative_refinements(plain, {stage.model.added, fitted}))
+      others.push_back({std::move(other), kRevived});
+    fitted = fits.best(std::move(fitted), others);
   }
   // others that have come in since make it of no use
-  if (const ParameterSubset rest = without_least(fitted, stage.model.added);
+  if (ParameterSubset rest = without_least(fitted, stage.model.added);
       effort == InnovationFit::converged && rest.parameters.size() < fitted.parameters.size()) {
-    const double fewer = static_cast<double>(fitted.parameters.size() - rest.parameters.size());
-    try_other(rest, kRevived - kPerRefinement * fewer);
+    fitted = fits.best(std::move(fitted), {{std::move(rest), kRevived}});
   }
   stage.model.fitted = std::move(fitted);
   update_waves(stage);

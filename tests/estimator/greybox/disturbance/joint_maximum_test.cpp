@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "config/schema/document.h"
 #include "estimator/greybox/selection/innovation_stage.h"
@@ -26,17 +28,42 @@ constexpr two_masses::Rig kRig{.resonance_Hz = 17.0,
                                .kd_V_s_per_m = 6.0,
                                .second_disturbance_N = 2.0};
 
-SearchContext context() {
-  const plant_sim::ModelFile model = plant_sim::read_model(config::schema::Document::parse(
+plant_sim::ModelFile two_mass_axis() {
+  return plant_sim::read_model(config::schema::Document::parse(
       "schema_version = 1\nname = \"axis\"\nplant = \"force_driven_axis\"\n[parameters]\n"
       "mass_kg = 33.0\ndamping_N_s_per_m = 150.0\ngain_N_per_V = 40.0\n"
       "[effects.second_mass]\nmass_ratio = 0.4\nresonance_Hz = 16.6\ndamping_ratio = 0.02\n"
       "sensor_ratio = 1.0\n",
       "axis"));
-  config::record::Record record = two_masses::record(kRig);
+}
+
+config::record::Record record_of(const two_masses::Rig& rig) {
+  config::record::Record record = two_masses::record(rig);
   record.name = "two masses";
-  record.sample_time_s = 1.0 / kRig.sample_rate_Hz;
-  return {selection::make_problem(model, fit_dataset({dataset_of(record)}, {})), {}};
+  record.sample_time_s = 1.0 / rig.sample_rate_Hz;
+  return record;
+}
+
+SearchContext context_of(std::vector<Dataset> records) {
+  return {selection::make_problem(two_mass_axis(), fit_dataset(std::move(records), {})), {}};
+}
+
+SearchContext context() { return context_of({dataset_of(record_of(kRig))}); }
+
+/// A record with a gap.
+SearchContext interrupted_context() {
+  config::record::Record gapped = record_of(kRig);
+  for (std::vector<double>* column : {&gapped.t_s, &gapped.u_V, &gapped.y_m})
+    column->erase(column->begin() + 1400, column->begin() + 1440);
+  gapped.gaps = {1400};
+  return context_of({dataset_of(gapped)});
+}
+
+SearchContext two_records_context() {
+  two_masses::Rig second = kRig;
+  second.seed = 2;
+  second.duration_s = 3.0;
+  return context_of({dataset_of(record_of(kRig)), dataset_of(record_of(second))});
 }
 
 /// -2 log posterior with the predictor that follows the parameters.
@@ -53,8 +80,13 @@ double cost(const SearchContext& plain, const InnovationStage& stage, const Eige
 /// The search ends where it expects a fall of -2 log L by less than 1e-5 of it, some 0.1.
 constexpr double kTolerance = 0.2;
 
-TEST(JointMaximum, NoNeighbourIsLikelier) {
-  const SearchContext plain = context();
+class JointMaximumOf : public testing::TestWithParam<SearchContext (*)()> {};
+
+INSTANTIATE_TEST_SUITE_P(Records, JointMaximumOf,
+                         testing::Values(&context, &interrupted_context, &two_records_context));
+
+TEST_P(JointMaximumOf, NoNeighbourIsLikelier) {
+  const SearchContext plain = GetParam()();
   const InnovationStage stage = settled(plain, selection::first_stage(plain), {},
                                         selection::Settling::fully, SimulationWidth{});
   const FitSummary& fitted = stage.model.fitted;
@@ -120,6 +152,17 @@ TEST(JointMaximum, IsTheSameForAnyNumberOfThreads) {
   const JointMaximum several = found(3);
   EXPECT_EQ(one.theta, several.theta);
   EXPECT_EQ(one.noise.noise.sensor_m, several.noise.noise.sensor_m);
+}
+
+TEST(JointMaximum, ACancelledSearchStaysWhereItBegan) {
+  const SearchContext plain = context();
+  const InnovationStage stage = settled(plain, selection::first_stage(plain), {},
+                                        selection::Settling::once, SimulationWidth{});
+  const Eigen::VectorXd& start = stage.model.fitted.theta;
+  const JointMaximum found =
+      joint_maximum(plain.problem.model, stage.context.problem.data, stage.model.fitted.parameters,
+                    start, stage.noise, 1, [] { return true; });
+  EXPECT_EQ(found.theta, start);
 }
 
 }  // namespace

@@ -26,9 +26,17 @@ InnovationSearch searched(const std::string& spec, std::size_t seed) {
   return search_innovations(context, first_stage(context), {});
 }
 
+/// The search after that by simulations.
+InnovationSearch searched_after_simulations(const std::string& spec, std::size_t seed) {
+  SearchContext context = diagnose_test::context_of(spec, seed);
+  context.options.threads = 2;
+  const SearchStart start = start_search(context);
+  return search_innovations(context, start.first, start.branch);
+}
+
 // Without the line, a resonance passes for the oil that the pulsation shakes.
 TEST(InnovationSearch, AnEffectTakenBeforeALineIsExchangedForTheRightOne) {
-  const InnovationSearch found = searched(
+  const InnovationSearch found = searched_after_simulations(
       "motion=multisine,length_s=12,entrained_air.fraction_ratio=0.3,"
       "outside.pulsation_Pa=200000,outside.pulsation_Hz=14",
       5004);
@@ -115,6 +123,47 @@ TEST(InnovationSearch, APlayIsFoundThroughARandomForce) {
   EXPECT_THAT(found.final.model.added, ElementsAre("backlash"));
   EXPECT_NEAR(found.final.model.fitted.value("backlash.width_m"), 2e-4, 4e-6);
   EXPECT_FALSE(found.physics_missing());
+}
+
+/// A search by simulations on a record, with the second effect where there is a first.
+SearchStart two_effects(const SearchContext& context) {
+  SearchStart start = start_search(context);
+  if (start.branch.stage.added.size() == 1) add_second_effect(context, start);
+  return start;
+}
+
+InnovationStage settled_first(const SearchContext& context, const SearchStart& start) {
+  return settled(context, start.first, {}, Settling::fully, wide(context.options.threads));
+}
+
+// One by one, a leak and friction would come first, and the two only after them.
+TEST(InnovationSearch, GoesOnFromAHeldModelThatExplainsTheRecord) {
+  SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=12,null_bias.offset_V=0.1,deadband.half_width_V=0.15,"
+      "outside.force_N=20",
+      83);
+  const SearchStart start = two_effects(context);
+  ASSERT_THAT(start.branch.stage.added, testing::UnorderedElementsAre("null_bias", "deadband"));
+  EXPECT_TRUE(explains_record(context, settled_first(context, start), start.branch.stage));
+  const InnovationSearch found = search_innovations(context, start.first, start.branch);
+  EXPECT_THAT(found.final.model.added, testing::UnorderedElementsAre("null_bias", "deadband"));
+  EXPECT_FALSE(found.physics_missing());
+  ASSERT_GE(found.rounds.size(), 2);
+  const InnovationCandidate& taken = found.rounds[1].candidates.front();
+  EXPECT_EQ(taken.effect, start.branch.stage.added.front());
+  EXPECT_THAT(taken.further, ElementsAre(start.branch.stage.added.back()));
+}
+
+TEST(ExplainsRecord, NotWhereALawIsLeft) {
+  SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=12,null_bias.offset_V=0.1,left_out=cubic_damping,"
+      "left_out.size=100000,outside.force_N=20",
+      84);
+  const SearchStart start = start_search(context);
+  ASSERT_THAT(start.branch.stage.added, SizeIs(1));
+  const InnovationStage before = settled_first(context, start);
+  EXPECT_FALSE(explains_record(context, before, start.branch.stage));
+  EXPECT_FALSE(explains_record(context, before, start.first)) << "nothing is held";
 }
 
 // A second mass that does not damp rings like the line; what it is, the line says in three numbers.
