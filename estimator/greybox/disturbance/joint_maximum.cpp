@@ -1,7 +1,6 @@
 #include "estimator/greybox/disturbance/joint_maximum.h"
 
-#include <algorithm>
-#include <cmath>
+#include <span>
 #include <utility>
 
 #include "estimator/greybox/disturbance/following_gains.h"
@@ -33,10 +32,11 @@ constexpr double kNoiseStep = 1e-2;
 class FollowingPredictors {
  public:
   FollowingPredictors(const plant_sim::ModelFile& model, const FitDataset& data,
-                      const std::vector<FreeParameter>& parameters, double force_place,
+                      const std::vector<FreeParameter>& parameters,
+                      const std::vector<nonlinear::Unknown>& unknowns, double force_place,
                       unsigned threads)
       : data_(data),
-        following_(model, data, parameters, force_place, threads),
+        following_(model, data, parameters, unknowns, force_place, threads),
         threads_(threads),
         valid_(data.training_mask.sum()) {
     for (const Dataset& record : data.records) runs_.emplace_back(model, record, parameters);
@@ -48,9 +48,7 @@ class FollowingPredictors {
     const VectorXd log_determinant = log_determinants(points);
     residuals_m.resize(data_.size() + 1, points.cols());
     in_parallel(runs_.size(), threads_, [&](std::size_t r) {
-      MatrixXd innovations_m;
-      runs_[r].innovations(points.topRows(points.rows() - kNoiseCoordinates), gains_[r],
-                           innovations_m);
+      MatrixXd innovations_m = innovations(points.topRows(points.rows() - kNoiseCoordinates), r);
       const MatrixXd& lines = data_.records[r].innovations->lines;
       if (lines.cols() > 0) innovations_m -= lines * (lines.transpose() * innovations_m).eval();
       residuals_m.middleRows(static_cast<Index>(data_.starts[r]), innovations_m.rows()) =
@@ -61,6 +59,25 @@ class FollowingPredictors {
   }
 
  private:
+  /// Neighbouring points whose gains correct the same states run side by side: a second mass may
+  /// come in or go.
+  [[nodiscard]] MatrixXd innovations(const MatrixXd& theta, std::size_t r) {
+    const std::vector<InnovationGains>& gains = gains_[r];
+    MatrixXd result(static_cast<Index>(data_.records[r].size()), theta.cols());
+    for (std::size_t from = 0; from < gains.size();) {
+      std::size_t to = from + 1;
+      while (to < gains.size() && gains[to].states == gains[from].states) ++to;
+      const auto first = static_cast<Index>(from);
+      const auto count = static_cast<Index>(to - from);
+      MatrixXd part;
+      runs_[r].innovations(theta.middleCols(first, count),
+                           std::span(gains).subspan(from, to - from), part);
+      result.middleCols(first, count) = part;
+      from = to;
+    }
+    return result;
+  }
+
   /// Also takes the predictors' gains.
   VectorXd log_determinants(const MatrixXd& points) {
     std::vector<std::vector<KalmanGains>> found = following_.at(points);
@@ -91,7 +108,6 @@ JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& 
                            const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                            const NoiseModel& noise, unsigned threads,
                            const std::function<bool()>& cancel) {
-  FollowingPredictors predictors(model, data, parameters, noise.force_place, threads);
   VectorXd weights = VectorXd::Ones(data.size() + 1);
   weights.head(data.size()) = data.training_mask;
   nonlinear::Problem problem = problem_of(data, weights, parameters);
@@ -107,6 +123,8 @@ JointMaximum joint_maximum(const plant_sim::ModelFile& model, const FitDataset& 
     unknown.step = kNoiseStep;
     problem.unknowns.push_back(unknown);
   }
+  FollowingPredictors predictors(model, data, parameters, problem.unknowns, noise.force_place,
+                                 threads);
   problem.evaluate = [&](const MatrixXd& points, MatrixXd& residuals_m) {
     predictors.evaluate(points, residuals_m);
   };

@@ -64,7 +64,8 @@ Candidate candidate_of(const SearchContext& context, const InnovationCandidate& 
                        const ModelStage& before) {
   Candidate candidate;
   candidate.effects = {found.effect};
-  candidate.effects.insert(candidate.effects.end(), found.further.begin(), found.further.end());
+  candidate.effects.insert(candidate.effects.end(), found.taken_with_it.begin(),
+                           found.taken_with_it.end());
   candidate.fitted_at_all = found.settled;
   if (!found.settled) return candidate;
   candidate.fitted = simulated(context, found.fitted);
@@ -72,8 +73,8 @@ Candidate candidate_of(const SearchContext& context, const InnovationCandidate& 
   candidate.expected_ratio =
       candidate.validation_rms_m / std::max(before.fitted.validation_rms_m, 1e-300);
   const double raw_nats = std::max(0.0, found.gain_nats + found.penalty_nats);
-  candidate.p_value =
-      residual::chi_square_upper(2.0 * raw_nats, found.penalty_nats / kPerParameter_nats);
+  candidate.p_value = residual::chi_square_upper(
+      2.0 * raw_nats, std::max(1.0, found.penalty_nats / kPerParameter_nats));
   return candidate;
 }
 
@@ -170,7 +171,7 @@ StructureSearch structure_search_of(const SearchContext& context, const ModelSta
       if (!candidate.effect.empty())
         one.candidates.push_back(candidate_of(context, candidate, one.before));
     }
-    const bool grew = round.before.added.size() + 1 > result.path.size();
+    const bool grew = round.before.added.size() > result.path.back().added.size();
     if (grew && !round.before.added.empty()) result.path.push_back(one.before);
     result.rounds.push_back(std::move(one));
   }

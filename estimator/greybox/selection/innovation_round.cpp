@@ -1,10 +1,12 @@
 #include "estimator/greybox/selection/innovation_round.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
+#include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
@@ -173,6 +175,13 @@ class RoundTrials {
     return best;
   }
 
+  /// True for lines that the record tells apart by their frequency.
+  [[nodiscard]] bool is_apart(std::size_t a, std::size_t b) const {
+    const double by_Hz =
+        trials_[a].candidate.line.frequency_Hz - trials_[b].candidate.line.frequency_Hz;
+    return std::abs(by_Hz) * length_s(plain_.problem.data) > 1.0;
+  }
+
   void polish_contenders(std::size_t best) {
     const double best_nats = trials_[best].candidate.gain_nats;
     const bool is_line = trials_[best].candidate.effect.empty();
@@ -182,8 +191,8 @@ class RoundTrials {
       double lead_nats = kContends_nats;
       if (is_line && !candidate.effect.empty())
         lead_nats = std::max(lead_nats, kContendsWithLine * best_nats);
-      // of two lines the other comes next
-      if (i != best && is_line && candidate.effect.empty()) continue;
+      // another line can still be taken in the next round
+      if (i != best && is_line && candidate.effect.empty() && is_apart(i, best)) continue;
       const bool contends = candidate.gain_nats > best_nats - lead_nats;
       if (contends && candidate.settled && polished_[i] == 0) contenders.push_back(i);
     }

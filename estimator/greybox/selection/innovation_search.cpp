@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <utility>
@@ -62,10 +63,20 @@ bool take_held(const SearchContext& context, const ModelStage& held, double evid
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return false;
   if (!effect_out_of_range(other).empty()) return false;
   InnovationCandidate candidate;
-  candidate.effect = held.added.front();
-  candidate.further.assign(held.added.begin() + 1, held.added.end());
+  // those that are new come last, as in every other round
+  const auto is_new = [&](const std::string& effect) {
+    return std::find(stage.model.added.begin(), stage.model.added.end(), effect) ==
+           stage.model.added.end();
+  };
+  std::vector<std::string>& added = other.model.added;
+  auto first_new = std::stable_partition(added.begin(), added.end(), std::not_fn(is_new));
+  if (first_new == added.end()) first_new = added.begin();
+  candidate.effect = *first_new;
+  candidate.taken_with_it.assign(first_new + 1, added.end());
   candidate.settled = true;
-  candidate.penalty_nats = 0.5 * (penalised(other) - other.minus_two_log);
+  candidate.penalty_nats =
+      kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
+                            static_cast<double>(stage.model.fitted.parameters.size()));
   candidate.gain_nats = 0.5 * (penalised(stage) - penalised(other));
   candidate.fitted = other.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
@@ -150,12 +161,18 @@ bool ends_at_held(const SearchContext& context, const ModelStage& held,
          limits.ends_at(stage, inexact_nats(context, search, stage));
 }
 
+/// True for so many effects that they may stand in for a law, where they leave much physics: a
+/// fourth would hardly be claimed.
+bool stand_in_for_law(const InnovationStage& stage, double inexact_nats) {
+  return stage.model.added.size() >= kStandIn && leaves_much_physics(stage, inexact_nats);
+}
+
 void note_gains(InnovationSearch& search, const InnovationStage& final) {
   const std::set<std::string> added(final.model.added.begin(), final.model.added.end());
   for (const InnovationRound& round : search.rounds) {
     if (!round.taken || !added.contains(round.candidates.front().effect)) continue;
     const InnovationCandidate& taken = round.candidates.front();
-    search.gains_nats[taken.effect] = taken.gain_nats;
+    if (taken.taken_with_it.empty()) search.gains_nats[taken.effect] = taken.gain_nats;
   }
   for (std::size_t i = 0; i < search.without.size(); ++i) {
     const InnovationStage& without = search.without[i];
@@ -210,13 +227,17 @@ bool is_clearly_likelier(const SearchContext& with_holdouts, const InnovationSta
 
 bool explains_record(const SearchContext& with_holdouts, const InnovationStage& before,
                      const ModelStage& held) {
-  if (held.added.empty() || with_holdouts.cancelled()) return false;
+  if (held.added.empty() || held.added.size() >= kStandIn || with_holdouts.cancelled())
+    return false;
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
   search.before = before;
   search.final =
       settled(context, held, before.noise, Settling::once, wide(context.options.threads));
-  if (!(penalised(search.final) < penalised(before) - 2.0 * kEvidence_nats)) return false;
+  if (!(penalised(search.final) < penalised(before) - 2.0 * kEvidence_nats) ||
+      !effect_out_of_range(search.final).empty()) {
+    return false;
+  }
   search.inexact_nats = inexact_nats(context, search, search.final);
   weigh_remainder(context, search);
   return !context.cancelled() && !search.physics_missing();
@@ -233,23 +254,22 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto evidence_nats = [&] { return kEvidence_nats + inexact_nats(context, search, stage); };
   std::set<std::string> dropped;
-  // a held model that explains the record spares the rounds to it, the first excepted: one effect
-  // in its place comes before two
-  bool jumps = explains_record(context, stage, held.stage);
-  // more than stand in for a law would hardly be claimed
-  const auto stands_in = [&] {
-    return stage.model.added.size() >= kStandIn &&
-           leaves_much_physics(stage, inexact_nats(context, search, stage));
-  };
+  bool may_go_on_from_held = true;
+  bool went_on_from_held = false;
   const auto extend_fully = [&] {
     bool more = true;
-    while (more && !search.ended_early && !context.cancelled() && !stands_in()) {
+    while (more && !search.ended_early && !context.cancelled() &&
+           !stand_in_for_law(stage, inexact_nats(context, search, stage))) {
       if (stage.model.added.empty()) search.bare = stage;
       const RoundOptions options{Candidates::effects_and_lines, limits.most_effects,
                                  evidence_nats()};
       more = extend(context, stage, options, search.memo, search.rounds, dropped);
-      if (std::exchange(jumps, false))
-        more |= take_held(context, held.stage, evidence_nats(), stage, search.rounds);
+      // skips the rounds that lead to a held model; a single effect is preferred to several
+      if (std::exchange(may_go_on_from_held, false) &&
+          explains_record(context, search.before, held.stage)) {
+        went_on_from_held = take_held(context, held.stage, evidence_nats(), stage, search.rounds);
+        more |= went_on_from_held;
+      }
       search.ended_early =
           more && limits.ends_at && limits.ends_at(stage, inexact_nats(context, search, stage));
     }
@@ -257,7 +277,8 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   search.ended_early = ends_at_held(context, held.stage, search, limits);
   extend_fully();
   if (!search.ended_early && take_line_for_resonance(context, search, stage)) extend_fully();
-  if (!search.ended_early) take_held(context, held.stage, evidence_nats(), stage, search.rounds);
+  if (!search.ended_early && !went_on_from_held)
+    take_held(context, held.stage, evidence_nats(), stage, search.rounds);
   for (int round = 0; !search.ended_early && !context.cancelled(); ++round) {
     search.without = eliminate(context, stage, evidence_nats());
     if (round == kMostExchanges || !exchange(context, search, stage)) break;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,9 +10,9 @@
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/likeliest_start.h"
+#include "estimator/greybox/selection/other_fits.h"
 #include "estimator/greybox/selection/revived_refinements.h"
 #include "estimator/greybox/selection/settled_memo.h"
-#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 
@@ -27,17 +26,8 @@ constexpr int kTrialIterations = 15;
 constexpr double kTrialTolerance = 1e-4;
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
-/// Lead in -2 log L that a fit from another start does not make up for after a quick look.
-constexpr double kFarBehind = 100.0;
-/// Deviation of a lag in -2 log L from what a fit's slopes expect, absolute and as a share, up to
-/// which a quick look from another start is on its way to the same optimum.
-constexpr double kSameOptimum = 1.0;
-constexpr double kSameShape = 0.2;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
-/// ... and each parameter that one has more than the refinement whose place it takes. A shorter one
-/// may be as much less likely.
-constexpr double kPerRefinement = 6.0;
 /// Fall of -2 log L by a step of a trial's noise model below which it is the last.
 constexpr double kLastTrialNoiseStep = 1.0;
 /// Turns of noise model and parameters before the search for both together, which finds the nearest
@@ -74,21 +64,6 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
   return result;
 }
 
-/// Distance of other parameters from a fit's in squared standard errors: the rise of -2 log L that
-/// its Jacobian expects. Infinite where the fits have other parameters, or no Jacobian is known.
-double distance(const FitSummary& fitted, const FitSummary& other, double floor_m) {
-  const bool known = fitted.jacobian.cols() == fitted.theta.size();
-  if (!known || other.theta.size() != fitted.theta.size())
-    return std::numeric_limits<double>::infinity();
-  const Eigen::VectorXd by = other.theta - fitted.theta;
-  double rise = (fitted.jacobian * by).squaredNorm() / (floor_m * floor_m);
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const double sd = fitted.parameters[i].prior_sd;
-    if (std::isfinite(sd)) rise += std::pow(by[static_cast<Eigen::Index>(i)] / sd, 2);
-  }
-  return rise;
-}
-
 void update_waves(InnovationStage& stage) {
   disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
                             stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,
@@ -101,65 +76,6 @@ void tune_frequencies(InnovationStage& stage) {
                                 stage.linear, stage.noise);
 }
 
-/// A start beside that of a fit, and the fall of -2 log L that its fit has to bring, beside that of
-/// further refinements.
-struct OtherStart {
-  ParameterSubset start;
-  double enough = 0.0;
-};
-
-/// Fits from other starts, each after a quick look that may show that it leads nowhere.
-class OtherFits {
- public:
-  OtherFits(const SearchContext& context, InnovationFit effort, SimulationWidth width)
-      : context_(context), effort_(effort), width_(width) {}
-
-  /// The fit, or that of another start which is likelier than it, and than those before it.
-  [[nodiscard]] FitSummary best(FitSummary fitted, const std::vector<OtherStart>& others) const {
-    std::vector<std::optional<FitSummary>> found(others.size());
-    const bool wide = width_.threads > 1 && others.size() > 1;
-    in_parallel(others.size(), wide ? width_.threads : 1, [&](std::size_t i) {
-      found[i] = fit_from(others[i].start, fitted, wide ? SimulationWidth{} : width_);
-    });
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      if (!found[i] || ends_at_least(*found[i])) continue;
-      const double more = static_cast<double>(found[i]->parameters.size()) -
-                          static_cast<double>(fitted.parameters.size());
-      if (cost(*found[i]) + kPerRefinement * more + others[i].enough < cost(fitted))
-        fitted = *std::move(found[i]);
-    }
-    return fitted;
-  }
-
- private:
-  [[nodiscard]] std::optional<FitSummary> fit_from(ParameterSubset start, const FitSummary& fitted,
-                                                   SimulationWidth width) const {
-    if (context_.cancelled()) return {};
-    FitSummary other = fit_innovations(context_, start, width, InnovationFit::quick);
-    const double lag = cost(other) - cost(fitted);
-    if (lag > kFarBehind || is_on_the_way(fitted, other, lag)) return {};
-    start.start = other.theta;
-    return fit_innovations(context_, start, width, effort_);
-  }
-
-  /// True where the fit's slopes expect the lag: the quick look is on its way to the same optimum.
-  [[nodiscard]] bool is_on_the_way(const FitSummary& fitted, const FitSummary& other,
-                                   double lag) const {
-    if (!(lag >= 0.0)) return false;
-    const double expected = distance(fitted, other, floor_m());
-    return std::abs(expected - lag) < std::max(kSameOptimum, kSameShape * lag);
-  }
-
-  [[nodiscard]] double cost(const FitSummary& fit) const {
-    return squares(fit, floor_m()) + prior_cost(fit);
-  }
-  [[nodiscard]] double floor_m() const { return context_.problem.data.noise_floor_m; }
-
-  const SearchContext& context_;
-  InnovationFit effort_;
-  SimulationWidth width_;
-};
-
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, in a first turn, at other values too.
 void refit(const SearchContext& plain, InnovationStage& stage,
@@ -171,7 +87,9 @@ void refit(const SearchContext& plain, InnovationStage& stage,
   stage.context = with_data(plain, data.data);
   const ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   FitSummary fitted = fit_innovations(stage.context, all, width, effort);
-  const OtherFits fits(stage.context, effort, width);
+  const auto take_likeliest = [&](const std::vector<OtherStart>& others) {
+    fitted = likeliest_fit(stage.context, std::move(fitted), others, effort, width);
+  };
   std::vector<OtherStart> others;
   if (other_start) {
     others.push_back({{all.parameters, *other_start}, 0.0});
@@ -180,17 +98,17 @@ void refit(const SearchContext& plain, InnovationStage& stage,
   }
   for (Eigen::VectorXd& start : revived_refinements(fitted))
     others.push_back({{all.parameters, std::move(start)}, kRevived});
-  fitted = fits.best(std::move(fitted), others);
+  take_likeliest(others);
   if (other_start && effort == InnovationFit::converged) {
     others.clear();
     for (ParameterSubset& other : alternative_refinements(plain, {stage.model.added, fitted}))
       others.push_back({std::move(other), kRevived});
-    fitted = fits.best(std::move(fitted), others);
+    take_likeliest(others);
   }
   // others that have come in since make it of no use
   if (ParameterSubset rest = without_least(fitted, stage.model.added);
       effort == InnovationFit::converged && rest.parameters.size() < fitted.parameters.size()) {
-    fitted = fits.best(std::move(fitted), {{std::move(rest), kRevived}});
+    take_likeliest({{std::move(rest), kRevived}});
   }
   stage.model.fitted = std::move(fitted);
   update_waves(stage);

@@ -18,7 +18,7 @@ inline constexpr double kParametersOfLine = 3.0;
 /// A candidate of a round: an effect, or a spectral line where `effect` is empty.
 struct InnovationCandidate {
   std::string effect;
-  std::vector<std::string> further;  ///< effects taken with it: those of a model taken whole
+  std::vector<std::string> taken_with_it;  ///< further effects of a model that is taken whole
   disturbance::SpectralLine line;
   double gain_nats = 0.0;  ///< less its penalty
   double penalty_nats = 0.0;

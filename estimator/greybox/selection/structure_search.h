@@ -35,7 +35,7 @@ inline constexpr double kRivals = 0.05;
 [[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 struct Candidate {
-  std::vector<std::string> effects;  ///< one, or a pair
+  std::vector<std::string> effects;  ///< one, a pair, or those of a model that is taken whole
   double expected_ratio = 1.0;       ///< by the screening (ScreeningResult); 1 for pairs
   FitSummary fitted;                 ///< with the stage's parameters
   double validation_rms_m = std::numeric_limits<double>::infinity();
@@ -70,7 +70,7 @@ inline constexpr double kWorthTelling = 0.05;
 struct StructureSearch {
   double nominal_rms_m = 0.0;    ///< held-out, the model file unchanged
   std::vector<Round> rounds;     ///< rounds of the path that led to the final model
-  std::vector<ModelStage> path;  ///< from the model as given to the final one, one effect at a time
+  std::vector<ModelStage> path;  ///< from the model as given to the final one
   ModelStage final;              ///< last stage of the path
   std::vector<RefusedModel> refused;
   bool interrupted = false;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "config/schema/document.h"
@@ -37,6 +38,9 @@ class FollowingGainsTest : public testing::Test {
     noise.corner_Hz = 2.0;
     noise.walk_m = 1e-8;
     noise.sensor_m = rig.noise_m;
+    unknowns_.resize(2 + kNoiseCoordinates);
+    for (nonlinear::Unknown& unknown : unknowns_) unknown.step = kStep;
+    for (std::size_t i = 2; i < unknowns_.size(); ++i) unknowns_[i].step = kNoiseStep;
     trial_.resize(2 + kNoiseCoordinates);
     trial_ << 1.0, 1.0, point_of(noise);
   }
@@ -48,12 +52,16 @@ class FollowingGainsTest : public testing::Test {
                         data_.noise_floor_m);
   }
 
+  [[nodiscard]] FollowingGains following_gains(unsigned threads = 1) const {
+    return {model_, data_, parameters_, unknowns_, plant_sim::kPlaceOfSensor, threads};
+  }
+
   /// A trial and points beside it.
   [[nodiscard]] static MatrixXd group(const VectorXd& trial) {
     MatrixXd points = trial.replicate(1, 4);
     points(0, 1) += kStep;
     points(1, 2) += kStep;
-    points(3, 3) += 1e-2;
+    points(3, 3) += kNoiseStep;
     return points;
   }
 
@@ -64,6 +72,7 @@ class FollowingGainsTest : public testing::Test {
   }
 
   static constexpr double kStep = 1e-3;
+  static constexpr double kNoiseStep = 1e-2;
   plant_sim::ModelFile model_ = plant_sim::read_model(config::schema::Document::parse(
       "schema_version = 1\nname = \"axis\"\nplant = \"force_driven_axis\"\n[parameters]\n"
       "mass_kg = 30.0\ndamping_N_s_per_m = 120.0\ngain_N_per_V = 40.0\n"
@@ -71,11 +80,12 @@ class FollowingGainsTest : public testing::Test {
       "axis"));
   FitDataset data_;
   std::vector<FreeParameter> parameters_;
+  std::vector<nonlinear::Unknown> unknowns_;
   VectorXd trial_;
 };
 
 TEST_F(FollowingGainsTest, AFirstGroupIsExact) {
-  FollowingGains following(model_, data_, parameters_, plant_sim::kPlaceOfSensor, 2);
+  FollowingGains following = following_gains(2);
   const MatrixXd points = group(trial_);
   const auto found = following.at(points);
   ASSERT_EQ(found.size(), 1U);
@@ -84,7 +94,7 @@ TEST_F(FollowingGainsTest, AFirstGroupIsExact) {
 }
 
 TEST_F(FollowingGainsTest, BesideAnotherTrialGainsFollowAsTheyDid) {
-  FollowingGains following(model_, data_, parameters_, plant_sim::kPlaceOfSensor, 1);
+  FollowingGains following = following_gains();
   (void)following.at(group(trial_));
   VectorXd next = trial_;
   next.head(2) *= 1.01;
@@ -105,17 +115,48 @@ TEST_F(FollowingGainsTest, BesideAnotherTrialGainsFollowAsTheyDid) {
   }
 }
 
-// Points without their trial renew the slopes.
-TEST_F(FollowingGainsTest, PointsAboutTheLastTrialAreExact) {
-  FollowingGains following(model_, data_, parameters_, plant_sim::kPlaceOfSensor, 1);
+TEST_F(FollowingGainsTest, PointsAboutTheLastTrialAreExactAndRenewTheSlopes) {
+  FollowingGains following = following_gains();
   (void)following.at(group(trial_));
   VectorXd next = trial_;
-  next.head(2) *= 1.01;
+  next.head(2) *= 1.3;
   (void)following.at(group(next));
   const MatrixXd about = group(next).rightCols(3);
   const auto found = following.at(about).front();
   for (Index i = 0; i < about.cols(); ++i)
     expect_equal(found[static_cast<std::size_t>(i)], anew(about.col(i)));
+  const double renewed = found[1].log_determinant - anew(next).log_determinant;
+  VectorXd third = next;
+  third.head(2) *= 1.3;
+  const auto beside = following.at(group(third)).front();
+  EXPECT_NEAR(beside[2].log_determinant - beside[0].log_determinant, renewed,
+              1e-6 * std::abs(renewed));
+}
+
+TEST_F(FollowingGainsTest, ASlopeIsComputedAgainAfterAFewTrials) {
+  FollowingGains following = following_gains();
+  VectorXd trial = trial_;
+  int exact = 0;
+  for (int i = 0; i < 9; ++i) {
+    const MatrixXd points = group(trial);
+    const KalmanGains found = following.at(points).front()[2];
+    if (found.gains.gain == anew(points.col(2)).gains.gain) ++exact;
+    trial.head(2) *= 1.02;
+  }
+  EXPECT_EQ(exact, 3);
+}
+
+// Without its resonance the second mass is none, and its states go.
+TEST_F(FollowingGainsTest, StatesMayComeAndGo) {
+  FollowingGains following = following_gains();
+  VectorXd rigid = trial_;
+  rigid[1] = 0.0;
+  for (const VectorXd& trial : {trial_, rigid, trial_}) {
+    const MatrixXd points = group(trial);
+    const auto found = following.at(points).front();
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_EQ(found[i].gains.states, anew(points.col(static_cast<Index>(i))).gains.states);
+  }
 }
 
 }  // namespace

@@ -26,11 +26,12 @@ InnovationSearch searched(const std::string& spec, std::size_t seed) {
   return search_innovations(context, first_stage(context), {});
 }
 
-/// The search after that by simulations.
+/// The search after that by simulations, whose rounds it knows but not their outcome.
 InnovationSearch searched_after_simulations(const std::string& spec, std::size_t seed) {
   SearchContext context = diagnose_test::context_of(spec, seed);
   context.options.threads = 2;
-  const SearchStart start = start_search(context);
+  SearchStart start = start_search(context);
+  start.branch.stage = start.first;
   return search_innovations(context, start.first, start.branch);
 }
 
@@ -151,7 +152,7 @@ TEST(InnovationSearch, GoesOnFromAHeldModelThatExplainsTheRecord) {
   ASSERT_GE(found.rounds.size(), 2);
   const InnovationCandidate& taken = found.rounds[1].candidates.front();
   EXPECT_EQ(taken.effect, start.branch.stage.added.front());
-  EXPECT_THAT(taken.further, ElementsAre(start.branch.stage.added.back()));
+  EXPECT_THAT(taken.taken_with_it, ElementsAre(start.branch.stage.added.back()));
 }
 
 TEST(ExplainsRecord, NotWhereALawIsLeft) {
@@ -162,6 +163,10 @@ TEST(ExplainsRecord, NotWhereALawIsLeft) {
   const SearchStart start = start_search(context);
   ASSERT_THAT(start.branch.stage.added, SizeIs(1));
   const InnovationStage before = settled_first(context, start);
+  const InnovationStage held = settled(context, start.branch.stage, before.noise, Settling::once,
+                                       wide(context.options.threads));
+  EXPECT_LT(penalised(held), penalised(before) - 100.0);
+  EXPECT_GT(largest_curve_nats(held), kCurve_nats);
   EXPECT_FALSE(explains_record(context, before, start.branch.stage));
   EXPECT_FALSE(explains_record(context, before, start.first)) << "nothing is held";
 }
