@@ -48,7 +48,7 @@ TEST(IsOnTheWay, NotWithOtherParametersOrWithoutSlopes) {
   EXPECT_FALSE(is_on_the_way(best, at(3.0, 0.0), 9.0, 1.0));
 }
 
-// Of a play, several starts are fitted side by side.
+// Several widths of a play are tried side by side.
 TEST(LikeliestFit, StagesAreTheSameForAnyNumberOfThreads) {
   SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=8,backlash.width_m=0.0002,outside.force_N=20", 85);
