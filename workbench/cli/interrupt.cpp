@@ -1,14 +1,36 @@
 #include "workbench/cli/interrupt.h"
 
 #include <atomic>
+#include <cstdint>
+#include <ctime>
 
 namespace workbench::cli {
 namespace {
 
-std::atomic<int> came{0};
-static_assert(std::atomic<int>::is_always_lock_free);
+/// Signals that come together are one order: `timeout` sends its own twice, to the program and to
+/// its process group.
+constexpr std::int64_t kTogether_ns = 300'000'000;
 
-void take(int signal) { came = signal; }
+std::atomic<int> came{0};
+std::atomic<std::int64_t> first_ns{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+std::int64_t now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
+
+void take(int signal) {
+  if (came == 0) {
+    first_ns = now_ns();
+    came = signal;
+  } else if (now_ns() - first_ns > kTogether_ns) {
+    std::signal(signal, SIG_DFL);  // whoever cannot wait presses twice
+    std::raise(signal);
+  }
+}
 
 }  // namespace
 
@@ -16,8 +38,7 @@ Interrupt::Interrupt() {
   came = 0;
   struct sigaction action {};
   action.sa_handler = take;
-  // As by default again after the first: whoever cannot wait presses twice.
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, &before_int_);
   sigaction(SIGTERM, &action, &before_term_);
 }

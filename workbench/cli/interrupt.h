@@ -1,4 +1,5 @@
-// Ctrl-C while something long runs: the first asks it to stop, a second one ends the program.
+// Ctrl-C while something long runs: the first asks it to stop, a second one, not at the same
+// moment, ends the program.
 #pragma once
 
 #include <chrono>

@@ -116,6 +116,12 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, first, innovations, result);
   };
   const FitSummary held = simulated(search, innovations.final.model.fitted);
+  // the search by simulations has ended, that by the likelihood has not begun to
+  if (context.cancelled() && start.branch.stage.fitted.validation_rms_m < held.validation_rms_m) {
+    result.search = conclude_search(search, std::move(start));
+    conclude(context, search, result);
+    return;
+  }
   // what the likelihood prefers is no better model where its simulation is the worse one, unless
   // the disturbance is as large: a fit of simulations follows that
   const std::optional<Disturbance> disturbance = disturbance_of(search, innovations);

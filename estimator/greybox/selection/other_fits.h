@@ -9,12 +9,11 @@ namespace estimator::greybox::selection {
 
 struct OtherStart {
   ParameterSubset start;
-  double least_fall = 0.0;  ///< of -2 log L, besides that for each parameter more
+  double least_fall = 0.0;  ///< -2 log L has to fall by it, and by more for each parameter more
 };
 
 /// The likeliest of `fitted` and the fits from other starts. Each has a quick look, and is followed
-/// where that is not far behind, nor on its way to the optimum of `fitted`. The same for any number
-/// of threads.
+/// where that is not far behind, nor on its way to the optimum of `fitted`. Threads change nothing.
 [[nodiscard]] FitSummary likeliest_fit(const SearchContext& context, FitSummary fitted,
                                        const std::vector<OtherStart>& others, InnovationFit effort,
                                        SimulationWidth width);

@@ -6,6 +6,7 @@
 #include "estimator/greybox/dataset_simulation.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -45,6 +46,22 @@ TEST(InterruptedDiagnosis, WritesNoModelThatIsWorseThanItsFile) {
     EXPECT_LE(held_out_m(cut.better, servo.problem.data), (1.0 + 1e-9) * file_m)
         << last << " of " << all;
   }
+}
+
+// The likelihood has come to nothing yet, the simulations to two effects that leave a hundredth.
+TEST(InterruptedDiagnosis, KeepsWhatSimulationsFound) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=10,null_bias.offset_V=0.08,left_out=cubic_damping", 86);
+  std::atomic<bool> interrupted = false;
+  DiagnosisOptions options;
+  options.progress = [&](const SearchProgress& at) {
+    if (at.by_innovations) interrupted = true;
+  };
+  options.cancel = [&] { return interrupted.load(); };
+  const Diagnosis cut = diagnose(context.problem, options);
+  EXPECT_TRUE(interrupted);
+  EXPECT_LT(held_out_m(cut.better, context.problem.data),
+            0.1 * held_out_m(context.problem.model, context.problem.data));
 }
 
 }  // namespace
