@@ -116,6 +116,14 @@ std::string excitation_words(const selection::Excitation& excitation) {
   return "the records hardly move";
 }
 
+bool has_coarse_step(const selection::Diagnosis& d) {
+  return !d.loses_motion && d.step_error_m > kCoarseStep * d.noise_floor_m;
+}
+
+std::string finer_step_words(const selection::Diagnosis& d) {
+  return fmt::format("{:.2g}", 0.25 * d.better.step_s);
+}
+
 std::vector<std::string> notes(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const greybox::FitDataset& data = outcome.prepared->problem.data;
@@ -130,12 +138,12 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
     out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
                      (d.by_innovations ? "estimated with the model" : "the rounding alone"));
   }
-  if (!d.loses_motion && d.step_error_m > kCoarseStep * d.noise_floor_m) {
+  if (has_coarse_step(d)) {
     out.push_back(fmt::format(
         "a quarter of the integration step changes the simulation by {}, {} times the noise "
-        "floor: values may be off by more than their errors; run again with --set step_s={:.2g}",
+        "floor: values may be off by more than their errors; run again with --set step_s={}",
         config::units::length_words(d.step_error_m),
-        config::units::three_digits(d.step_error_m / d.noise_floor_m), 0.25 * d.better.step_s));
+        config::units::three_digits(d.step_error_m / d.noise_floor_m), finer_step_words(d)));
   }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;

@@ -92,7 +92,8 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
   if (d.search.rounds.empty()) return;
   const std::size_t index = deciding_round(d.search);
   const selection::Round& round = d.search.rounds[index];
-  out << "\ncandidates of round " << index + 1 << ": "
+  out << "\ncandidates of round " << index + 1
+      << (d.by_innovations ? " (errors of simulations, p of the likelihood): " : ": ")
       << config::units::length_words(round.before.fitted.validation_rms_m) << " without any\n";
   std::vector<std::string> taken = taken_in(d.search, index);
   std::sort(taken.begin(), taken.end());

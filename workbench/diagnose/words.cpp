@@ -171,7 +171,8 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
     case selection::Refusal::unlikely:
       break;
   }
-  return what + ": a disturbance explains the samples better.";
+  return what + (d.disturbance ? ": a disturbance explains the samples better."
+                               : ": sample by sample the better model predicts more.");
 }
 
 }  // namespace
@@ -188,14 +189,27 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
 void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   constexpr double kFar_sds = 2.5;
   std::vector<std::string> at_bound;
+  std::vector<const selection::ParameterValue*> far;
   for (const selection::ParameterValue& p : d.parameters) {
     const bool own = p.name.find('.') == std::string::npos;
     if (own && p.at_bound && p.value != 0.0) at_bound.push_back(p.name);
-    if (std::abs(p.prior_sds) < kFar_sds || was_added(d, p.name)) continue;
+    if (std::abs(p.prior_sds) >= kFar_sds && !was_added(d, p.name)) far.push_back(&p);
+  }
+  const auto side = [](const selection::ParameterValue* p) {
+    return p->prior_sds > 0.0 ? "above" : "below";
+  };
+  if (far.size() == 1) {
     out.push_back(fmt::format(
         "{} ends {:.1f} standard deviations of its prior {} the file's value: the file is wrong "
         "about it, or something that acts as it does is missing.",
-        p.name, std::abs(p.prior_sds), p.prior_sds > 0.0 ? "above" : "below"));
+        far.front()->name, std::abs(far.front()->prior_sds), side(far.front())));
+  } else if (!far.empty()) {
+    const auto text = [&](const selection::ParameterValue* p) {
+      return fmt::format("{} {:.1f} {}", p->name, std::abs(p->prior_sds), side(p));
+    };
+    out.push_back("Far from the file's values, in standard deviations of their priors: " +
+                  config::schema::joined_by(far, text, ", ") +
+                  ": the file is wrong about them, or something that acts as they do is missing.");
   }
   if (at_bound.empty()) return;
   const bool one = at_bound.size() == 1;
@@ -303,13 +317,15 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
 
 std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.fitted()) return "";
+  const selection::Diagnosis& d = outcome.diagnosis;
   const std::string& record = outcome.prepared->holdouts.empty()
                                   ? outcome.prepared->records.front()
                                   : outcome.prepared->holdouts.front();
   if (!outcome.prepared->output.empty()) {
     return present::shell_command({"spoolwatch", "compare", outcome.prepared->output, record});
   }
-  return outcome.prepared->command + " -o better.toml";
+  const std::string finer = has_coarse_step(d) ? " --set step_s=" + finer_step_words(d) : "";
+  return outcome.prepared->command + finer + " -o better.toml";
 }
 
 std::string split_words(const DiagnosisReport& outcome) {

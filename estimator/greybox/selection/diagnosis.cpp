@@ -17,6 +17,7 @@
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/record_differences.h"
+#include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/greybox/selection/settled_memo.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 
@@ -243,7 +244,7 @@ bool widen_file_values(const SearchContext& search, SearchStart& start, Diagnosi
       !widen_strained(start.first, widened)) {
     return false;
   }
-  const SearchContext wider = for_search({widened, search.options, search.memo});
+  const SearchContext wider = for_search({widened, search.options, search.memo, search.screenings});
   SearchStart other = begin_search(wider);
   const ModelStage& stage = other.branch.stage;
   if (!is_explained(wider, stage) &&
@@ -339,7 +340,8 @@ bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
 
 Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  SearchContext context{problem, options, std::make_shared<SettledMemo>()};
+  SearchContext context{problem, options, std::make_shared<SettledMemo>(),
+                        std::make_shared<ScreeningMemo>()};
   Diagnosis result;
   result.effects_only = problem.effects_only;
   result.floor_assumed = !std::isfinite(problem.data.noise_floor_m);

@@ -249,7 +249,7 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
   const std::string key = SettledMemo::key_of(plain, model, start, effort, width);
   if (std::optional<InnovationStage> known = plain.memo->find(plain, key)) return *std::move(known);
   InnovationStage anew = settled_anew(plain, std::move(model), start, effort, width);
-  if (!plain.cancelled() && std::isfinite(anew.minus_two_log)) plain.memo->keep(key, anew);
+  if (!plain.cancelled() && std::isfinite(anew.minus_two_log)) plain.memo->keep(plain, key, anew);
   return anew;
 }
 

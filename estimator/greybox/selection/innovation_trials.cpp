@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
+#include "estimator/greybox/selection/screening_memo.h"
+#include "estimator/greybox/selection/settled_memo.h"
 #include "estimator/greybox/sensor_place.h"
 #include "estimator/parallel.h"
 
@@ -108,6 +110,25 @@ double promised_nats(const InnovationStage& stage) {
 
 namespace {
 
+/// An effect's key in the memo; empty without one.
+std::string definition_of(const SearchContext& context, const std::string& effect) {
+  if (!context.screenings) return "";
+  const std::vector<plant_sim::EffectInfo>& all = context.problem.candidate_effects;
+  const auto info = std::find_if(all.begin(), all.end(),
+                                 [&](const auto& candidate) { return candidate.name == effect; });
+  return ScreeningMemo::key_of(context, *info);
+}
+
+/// The fit that is known under the key, or `fitted()` anew.
+template <class Fit>
+FitSummary known_or(const SearchContext& context, const std::string& key, const Fit& fitted) {
+  if (!context.screenings) return fitted();
+  if (auto known = context.screenings->fitted(key)) return *std::move(known);
+  FitSummary anew = fitted();
+  if (!context.cancelled()) context.screenings->keep(key, anew);
+  return anew;
+}
+
 bool has_sensor_place(const ParameterSubset& start) {
   return std::any_of(start.parameters.begin(), start.parameters.end(),
                      [](const auto& p) { return p.name == kSecondMassSensorRatio; });
@@ -145,16 +166,24 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   struct Start {
     std::size_t effect;
     const ParameterSubset* parameters;
+    std::string key;
     FitSummary fitted;
   };
   std::vector<Start> starts;  // all at once: some fits take many times as long as others
+  const std::string beside =
+      context.screenings ? ScreeningMemo::key_of(context, stage.model) : std::string();
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    for (const ParameterSubset& one : screened[i].starts) starts.push_back({i, &one, {}});
+    const std::string effect = beside + definition_of(context, screened[i].effect);
+    int number = 0;
+    for (const ParameterSubset& one : screened[i].starts)
+      starts.push_back({i, &one, effect + std::to_string(number++), {}});
   }
   in_parallel(starts.size(), context.options.threads, [&](std::size_t k) {
     if (context.cancelled()) return;
-    starts[k].fitted =
-        fit_innovations(context, *starts[k].parameters, SimulationWidth{}, InnovationFit::quick);
+    starts[k].fitted = known_or(context, starts[k].key, [&] {
+      return fit_innovations(context, *starts[k].parameters, SimulationWidth{},
+                             InnovationFit::quick);
+    });
   });
   std::vector<InnovationTrial> trials(screened.size());
   for (std::size_t i = 0; i < screened.size(); ++i) {
@@ -181,22 +210,33 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
 
 namespace {
 
+/// The model, its parameters fitted in a simulation with the weak observer.
+ModelStage with_observer(const SearchContext& plain, const ModelStage& model) {
+  const ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
+  const std::string key =
+      plain.screenings ? SettledMemo::key_of(plain, model, {}, Settling::once, SimulationWidth{})
+                       : std::string();
+  return {model.added, known_or(plain, key, [&] {
+            return fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask,
+                       all.parameters, all.start,
+                       simulation_options(plain, InnovationFit::converged));
+          })};
+}
+
 SimulatedEffects simulated_effects(const SearchContext& plain, const ModelStage& model) {
-  ModelStage with_observer = model;
-  ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
-  with_observer.fitted =
-      fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask, all.parameters,
-          all.start, simulation_options(plain, InnovationFit::converged));
-  std::vector<ScreeningResult> screened =
-      screen(plain, with_observer, absent_from(plain, with_observer));
+  const ModelStage base = with_observer(plain, model);
+  std::vector<ScreeningResult> screened = screen(plain, base, absent_from(plain, base));
   screened.resize(std::min(screened.size(), kSimulated));
+  const std::string beside = plain.screenings ? ScreeningMemo::key_of(plain, base) : std::string();
   SimulatedEffects result;
-  result.training_rms_without_m = with_observer.fitted.training_rms_m;
+  result.training_rms_without_m = base.fitted.training_rms_m;
   result.effects.resize(screened.size());
   in_parallel(screened.size(), plain.options.threads, [&](std::size_t i) {
+    const std::string& effect = screened[i].effect;
     result.effects[i] = {
-        screened[i].effect,
-        refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted};
+        effect, known_or(plain, beside + definition_of(plain, effect), [&] {
+          return refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted;
+        })};
   });
   return result;
 }

@@ -8,6 +8,8 @@
 #include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/rig_scale.h"
+#include "estimator/greybox/selection/settled_memo.h"
+#include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
 #include "plant_sim/formula/curve_effect.h"
 #include "plant_sim/hydraulics.h"
@@ -38,6 +40,10 @@ constexpr double kCurveOfFriction = 0.3;
 constexpr double kInexactCurves = 0.02;
 /// Standard deviation of a curve's values about zero, in typical sizes.
 constexpr double kPriorSizes = 5.0;
+/// Lag of a curve behind another model, and its share of what that explains, that more points and
+/// convergence do not make up for.
+constexpr double kFarBehind_nats = 200.0;
+constexpr double kShareOfBest = 0.5;
 /// Largest value of a curve over its typical one.
 constexpr double kMostOfCurve = 100.0;
 
@@ -230,6 +236,16 @@ void fit_attempts(const SearchContext& context, const InnovationStage& stage, st
 
 std::size_t points(const Attempt& attempt) { return attempt.effect.curve->x.size(); }
 
+/// True where another model explains far more of the record: what leaves nothing unexplained is not
+/// that much less likely than what does.
+bool is_far_behind(const SearchContext& context, const InnovationStage& curve,
+                   const InnovationStage& without) {
+  if (!context.memo) return false;
+  const double least = context.memo->least_minus_two_log(context);
+  return penalised(curve) > least + 2.0 * kFarBehind_nats &&
+         penalised(without) - penalised(curve) < kShareOfBest * (penalised(without) - least);
+}
+
 /// The likeliest curve; none where no curve promises anything.
 std::optional<Attempt> likeliest(const SearchContext& context, const InnovationStage& stage) {
   std::vector<Attempt> attempts = first_attempts(context, stage);
@@ -237,6 +253,7 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   if (attempts.empty() || context.cancelled()) return {};
   // a curve that leaves more than it gains is no law of its variable
   const InnovationStage& first = attempts.front().stage;
+  if (is_far_behind(context, first, stage)) return {};
   const double first_left_nats = largest_curve_nats(first);
   if (first_left_nats > 0.5 * (penalised(stage) - penalised(first))) return {};
   const Place place = attempts.front().place;
@@ -262,6 +279,15 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   return std::move(attempts.front());
 }
 
+/// True where the curve leaves so much to others that converging, which gains some tens of nats,
+/// and lines do not make up for it.
+bool leaves_too_much(const Attempt& curve, const InnovationStage& without) {
+  const double gain_nats = 0.5 * (penalised(without) - penalised(curve.stage));
+  if (!leaves_much_physics(curve.stage, kInexactCurves * std::max(0.0, gain_nats))) return false;
+  const std::vector<ScoredLine> lines = line_candidates(curve.context, curve.stage);
+  return lines.empty() || lines.front().gain_nats < largest_curve_nats(curve.stage);
+}
+
 }  // namespace
 
 std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const ModelStage& base) {
@@ -270,7 +296,7 @@ std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const 
   const InnovationStage stage = settled(context, base, {}, Settling::fully, width);
   if (!std::isfinite(stage.minus_two_log) || context.cancelled()) return {};
   std::optional<Attempt> best = likeliest(context, stage);
-  if (!best) return {};
+  if (!best || leaves_too_much(*best, stage)) return {};
   InnovationStage found =
       settled(best->context, best->stage.model, best->stage.noise, Settling::fully, width);
   if (!(found.minus_two_log < best->stage.minus_two_log)) found = std::move(best->stage);

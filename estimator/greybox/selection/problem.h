@@ -58,12 +58,15 @@ struct DiagnosisOptions {
   Separable separable;                                  ///< empty: no motion separates anything
 };
 
+class ScreeningMemo;
 class SettledMemo;
 
 struct SearchContext {
   DiagnosisProblem problem;
   DiagnosisOptions options;
-  std::shared_ptr<SettledMemo> memo = {};  ///< shared by copies of the context; null: none
+  // shared by copies of the context; null: none
+  std::shared_ptr<SettledMemo> memo = {};
+  std::shared_ptr<ScreeningMemo> screenings = {};
 
   [[nodiscard]] bool cancelled() const { return options.cancel && options.cancel(); }
 };

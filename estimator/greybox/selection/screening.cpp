@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "estimator/greybox/selection/projection.h"
+#include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/greybox/selection/screening_segment.h"
 #include "estimator/greybox/selection/trial_sizes.h"
 #include "estimator/parallel.h"
@@ -275,9 +276,19 @@ std::vector<ScreeningResult> screen(const SearchContext& context, const ModelSta
   const std::vector<Base> bases = bases_of(context, stage);
   const Projection projection(stage.fitted, context.problem.data.training_mask);
   std::vector<ScreeningResult> screened(effects.size());
+  const std::string beside =
+      context.screenings ? ScreeningMemo::key_of(context, stage) : std::string();
+  const auto anew_or_known = [&](const plant_sim::EffectInfo& effect) {
+    if (!context.screenings) return screen_effect(context, stage, bases, projection, effect);
+    const std::string key = beside + ScreeningMemo::key_of(context, effect);
+    if (auto known = context.screenings->screened(key)) return *std::move(known);
+    ScreeningResult anew = screen_effect(context, stage, bases, projection, effect);
+    if (!context.cancelled()) context.screenings->keep(key, anew);
+    return anew;
+  };
   in_parallel(effects.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;
-    screened[i] = screen_effect(context, stage, bases, projection, effects[i]);
+    screened[i] = anew_or_known(effects[i]);
     if (on_screened) on_screened(effects[i].name);
   });
   std::erase_if(screened, [](const ScreeningResult& look) { return look.effect.empty(); });

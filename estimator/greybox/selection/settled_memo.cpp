@@ -4,59 +4,16 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <cstring>
+#include <limits>
 #include <span>
-#include <type_traits>
 #include <utility>
 
 #include "estimator/greybox/innovation_gains.h"
+#include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/key_bytes.h"
 
 namespace estimator::greybox::selection {
 namespace {
-
-/// Bytes of the values that a result follows from.
-class KeyBytes {
- public:
-  template <class T>
-  void add(const T& value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    add(std::span(&value, 1));
-  }
-  void add(const std::string& text) {
-    add(text.size());
-    bytes_ += text;
-  }
-  template <class T>
-  void add(std::span<const T> values) {
-    const std::size_t from = bytes_.size();
-    bytes_.resize(from + values.size_bytes());
-    if (!values.empty()) std::memcpy(bytes_.data() + from, values.data(), values.size_bytes());
-  }
-
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-/// Hash after FNV-1a, of words in the place of bytes; records of equal hashes are taken for equal.
-class RecordHash {
- public:
-  void add(double value) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, &value, sizeof word);
-    add(word);
-  }
-  void add(std::span<const double> values) {
-    for (const double value : values) add(value);
-  }
-  void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ULL ^ (hash_ >> 47U); }
-
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
-};
 
 std::uint64_t hash_of(const FitDataset& data) {
   RecordHash hash;
@@ -97,18 +54,6 @@ plant_sim::ModelFile in_use(plant_sim::ModelFile model, const ModelStage& stage)
   return model;
 }
 
-void add(KeyBytes& key, const std::vector<FreeParameter>& parameters) {
-  key.add(parameters.size());
-  for (const FreeParameter& p : parameters) {
-    key.add(p.name);
-    key.add(p.scale);
-    for (const double value : {p.unit, p.lower, p.upper, p.prior_mean, p.prior_sd, p.origin})
-      key.add(value);
-    key.add(p.refinement);
-    key.add(p.instead_of);
-  }
-}
-
 void add(KeyBytes& key, const disturbance::NoiseModel& noise) {
   for (const double value : {noise.noise.disturbance_sd, noise.noise.corner_Hz, noise.noise.walk_m,
                              noise.noise.sensor_m, noise.force_place}) {
@@ -129,15 +74,12 @@ void add(KeyBytes& key, const disturbance::NoiseModel& noise) {
   }
 }
 
-std::size_t size_bytes_of(const InnovationStage& stage) {
+std::size_t size_bytes_of(const InnovationStage& stage,
+                          const std::vector<PackedLinearisation>& linear) {
   std::size_t numbers = static_cast<std::size_t>(stage.model.fitted.residual_m.size() +
                                                  stage.model.fitted.jacobian.size());
   std::size_t bytes = 0;
-  for (const disturbance::Linearisation& linear : stage.linear) {
-    bytes += linear.transition.size() * sizeof(disturbance::StateMatrix) +
-             linear.from_supply.size() * sizeof(disturbance::StateVector);
-    numbers += linear.speed_mps.size() + linear.gap_m.size();
-  }
+  for (const PackedLinearisation& one : linear) bytes += one.size_bytes();
   for (const Dataset& record : stage.context.problem.data.records) {
     const InnovationGains& gains = *record.innovations;
     numbers += static_cast<std::size_t>(gains.gain.size() + gains.scale.size() +
@@ -196,6 +138,7 @@ std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
   }
   if (!kept) return {};
   InnovationStage stage = kept->stage;
+  for (const PackedLinearisation& one : kept->linear) stage.linear.push_back(one.unpacked());
   stage.context = plain;
   FitDataset& data = stage.context.problem.data;
   for (std::size_t r = 0; r < data.records.size(); ++r)
@@ -204,16 +147,29 @@ std::optional<InnovationStage> SettledMemo::find(const SearchContext& plain,
   return stage;
 }
 
-void SettledMemo::keep(const std::string& key, const InnovationStage& stage) {
+double SettledMemo::least_minus_two_log(const SearchContext& plain) {
+  const std::uint64_t records = hash_of(plain.problem.data);
+  const std::lock_guard lock(mutex_);
+  const auto known = least_.find(records);
+  return known == least_.end() ? std::numeric_limits<double>::infinity() : known->second;
+}
+
+void SettledMemo::keep(const SearchContext& plain, const std::string& key,
+                       const InnovationStage& stage) {
   auto kept = std::make_shared<Kept>();
-  kept->size_bytes = size_bytes_of(stage) + key.size();
+  for (const disturbance::Linearisation& one : stage.linear) kept->linear.emplace_back(one);
+  kept->size_bytes = size_bytes_of(stage, kept->linear) + key.size();
   for (const Dataset& record : stage.context.problem.data.records)
     kept->gains.push_back(record.innovations);
   kept->stage.model = stage.model;
   kept->stage.noise = stage.noise;
-  kept->stage.linear = stage.linear;
   kept->stage.minus_two_log = stage.minus_two_log;
+  const std::uint64_t records = hash_of(plain.problem.data);
   const std::lock_guard lock(mutex_);
+  if (stage.noise.lines.empty()) {
+    double& least = least_.try_emplace(records, penalised(stage)).first->second;
+    least = std::min(least, penalised(stage));
+  }
   const auto [at, is_new] = stages_.try_emplace(key);
   if (!is_new) return;
   size_bytes_ += kept->size_bytes;

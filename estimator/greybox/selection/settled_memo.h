@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/packed_linearisation.h"
 
 namespace estimator::greybox::selection {
 
@@ -29,9 +31,13 @@ class SettledMemo {
   /// The stage kept under the key, in the context of `plain`.
   [[nodiscard]] std::optional<InnovationStage> find(const SearchContext& plain,
                                                     const std::string& key);
-  /// Keeps what settled() found. Drops the stages that were not asked for the longest while all
-  /// take more than `most_bytes`.
-  void keep(const std::string& key, const InnovationStage& stage);
+  /// Keeps what settled() found in the context of `plain`. Drops the stages that were not asked for
+  /// the longest while all take more than `most_bytes`.
+  void keep(const SearchContext& plain, const std::string& key, const InnovationStage& stage);
+
+  /// The least -2 log L, with its penalty, of the stages without spectral lines that were kept for
+  /// the records of `plain`; infinite: none.
+  [[nodiscard]] double least_minus_two_log(const SearchContext& plain);
 
   [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
 
@@ -39,9 +45,10 @@ class SettledMemo {
   explicit SettledMemo(std::size_t most_bytes = kMost_bytes) : most_bytes_(most_bytes) {}
 
  private:
-  /// A stage whose context holds the gains alone.
+  /// A stage without context and linearisations.
   struct Kept {
     InnovationStage stage;
+    std::vector<PackedLinearisation> linear;
     std::vector<std::shared_ptr<const InnovationGains>> gains;
     std::size_t size_bytes = 0;
   };
@@ -58,6 +65,7 @@ class SettledMemo {
   std::map<std::string, Entry> stages_;
   std::list<const std::string*> by_use_;  ///< keys of `stages_`, the latest asked for last
   std::size_t size_bytes_ = 0;
+  std::map<std::uint64_t, double> least_;  ///< by the records' hash
 };
 
 }  // namespace estimator::greybox::selection

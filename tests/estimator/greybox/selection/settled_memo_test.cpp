@@ -57,7 +57,7 @@ TEST(SettledMemo, ServesAContextWithOtherCandidates) {
   SearchContext other = context;
   other.memo = std::make_shared<SettledMemo>();
   other.problem.candidate_effects.clear();
-  other.memo->keep(key_of(context, first), marked);
+  other.memo->keep(context, key_of(context, first), marked);
   const InnovationStage found = settled_once(other, first);
   EXPECT_EQ(found.minus_two_log, marked.minus_two_log);
   EXPECT_TRUE(found.context.problem.candidate_effects.empty());
@@ -82,12 +82,12 @@ TEST(SettledMemo, DropsWhatWasNotAskedForTheLongest) {
   const ModelStage first = first_stage(context);
   const InnovationStage stage = settled_once(context, first);
   SettledMemo large;
-  large.keep("a", stage);
+  large.keep(context, "a", stage);
   SettledMemo memo(large.size_bytes() * 5 / 2);
-  memo.keep("a", stage);
-  memo.keep("b", stage);
+  memo.keep(context, "a", stage);
+  memo.keep(context, "b", stage);
   EXPECT_TRUE(memo.find(context, "a"));
-  memo.keep("c", stage);
+  memo.keep(context, "c", stage);
   EXPECT_TRUE(memo.find(context, "a"));
   EXPECT_FALSE(memo.find(context, "b"));
   EXPECT_TRUE(memo.find(context, "c"));

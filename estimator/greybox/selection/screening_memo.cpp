@@ -1,0 +1,90 @@
+#include "estimator/greybox/selection/screening_memo.h"
+
+#include <algorithm>
+#include <span>
+
+#include "estimator/greybox/selection/key_bytes.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+std::size_t size_bytes_of(const std::vector<FreeParameter>& parameters) {
+  return parameters.size() * (sizeof(FreeParameter) + sizeof(double));
+}
+
+std::size_t size_bytes_of(const ScreeningResult& result) {
+  std::size_t sum = sizeof result;
+  for (const ParameterSubset& start : result.starts) sum += size_bytes_of(start.parameters);
+  return sum;
+}
+
+std::size_t size_bytes_of(const FitSummary& fit) {
+  const auto numbers = static_cast<std::size_t>(fit.residual_m.size() + fit.jacobian.size());
+  return sizeof fit + size_bytes_of(fit.parameters) + sizeof(double) * numbers;
+}
+
+}  // namespace
+
+std::string ScreeningMemo::key_of(const SearchContext& context, const ModelStage& stage) {
+  const FitSummary& fitted = stage.fitted;
+  RecordHash hash;
+  const auto add_all = [&](const auto& values) {
+    hash.add(std::span<const double>(values.data(), static_cast<std::size_t>(values.size())));
+  };
+  add_all(fitted.residual_m);
+  add_all(fitted.jacobian);
+  add_all(context.problem.data.training_mask);
+  KeyBytes key;
+  key.add(hash.value());
+  key.add(context.problem.trial_sizes);
+  add(key, fitted.parameters);
+  key.add(
+      std::span<const double>(fitted.theta.data(), static_cast<std::size_t>(fitted.theta.size())));
+  return key.bytes();
+}
+
+std::string ScreeningMemo::key_of(const SearchContext& context,
+                                  const plant_sim::EffectInfo& effect) {
+  KeyBytes key;
+  key.add(effect.name);
+  add(key, effect_parameters(effect, kEveryRefinement));
+  for (const plant_sim::formula::FormulaEffect& own : context.problem.model.formula_effects) {
+    if (own.name != effect.name) continue;
+    key.add(own.site);
+    key.add(own.formula);
+    key.add(own.memory);
+    if (own.curve) key.add(std::span<const double>(own.curve->x));
+  }
+  return key.bytes();
+}
+
+template <class T>
+std::optional<T> ScreeningMemo::find(const Kept<T>& kept, const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  const auto known = kept.results.find(key);
+  return known == kept.results.end() ? std::nullopt : std::optional<T>(known->second);
+}
+
+template <class T>
+void ScreeningMemo::keep(Kept<T>& kept, const std::string& key, const T& result) {
+  const std::lock_guard lock(mutex_);
+  kept.size_bytes += key.size() + size_bytes_of(result);
+  if (kept.size_bytes > kMost_bytes) kept = {};
+  kept.results.insert_or_assign(key, result);
+}
+
+std::optional<ScreeningResult> ScreeningMemo::screened(const std::string& key) {
+  return find(screened_, key);
+}
+
+void ScreeningMemo::keep(const std::string& key, const ScreeningResult& result) {
+  keep(screened_, key, result);
+}
+
+std::optional<FitSummary> ScreeningMemo::fitted(const std::string& key) {
+  return find(fitted_, key);
+}
+
+void ScreeningMemo::keep(const std::string& key, const FitSummary& fit) { keep(fitted_, key, fit); }
+
+}  // namespace estimator::greybox::selection
