@@ -39,6 +39,8 @@ Interrupt::Interrupt() {
   struct sigaction action {};
   action.sa_handler = take;
   action.sa_flags = SA_RESTART;
+  sigaddset(&action.sa_mask, SIGINT);
+  sigaddset(&action.sa_mask, SIGTERM);
   sigaction(SIGINT, &action, &before_int_);
   sigaction(SIGTERM, &action, &before_term_);
 }

@@ -1,5 +1,5 @@
-// Ctrl-C while something long runs: the first asks it to stop, a second one, not at the same
-// moment, ends the program.
+// Ctrl-C while something long runs: the first signal asks it to stop; another one, SIGINT or
+// SIGTERM, not at the same moment, ends the program.
 #pragma once
 
 #include <chrono>

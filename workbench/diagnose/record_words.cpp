@@ -121,7 +121,8 @@ bool has_coarse_step(const selection::Diagnosis& d) {
 }
 
 std::string finer_step_words(const selection::Diagnosis& d) {
-  return fmt::format("{:.2g}", 0.25 * d.better.step_s);
+  constexpr double kLeast_s = 1e-6;  // a model file's
+  return fmt::format("{:.2g}", std::max(kLeast_s, 0.25 * d.better.step_s));
 }
 
 std::vector<std::string> notes(const DiagnosisReport& outcome) {

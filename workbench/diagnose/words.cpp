@@ -172,7 +172,7 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
       break;
   }
   return what + (d.disturbance ? ": a disturbance explains the samples better."
-                               : ": sample by sample the better model predicts more.");
+                               : ": the better model predicts each next sample better.");
 }
 
 }  // namespace
@@ -207,9 +207,9 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
     const auto text = [&](const selection::ParameterValue* p) {
       return fmt::format("{} {:.1f} {}", p->name, std::abs(p->prior_sds), side(p));
     };
-    out.push_back("Far from the file's values, in standard deviations of their priors: " +
+    out.push_back("These lie far from the file's values, in standard deviations of their priors: " +
                   config::schema::joined_by(far, text, ", ") +
-                  ": the file is wrong about them, or something that acts as they do is missing.");
+                  ". The file is wrong about them, or something that acts as they do is missing.");
   }
   if (at_bound.empty()) return;
   const bool one = at_bound.size() == 1;
@@ -315,6 +315,19 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   return out;
 }
 
+namespace {
+
+/// The command with --set step_s=`step_s`, in the place of another step where it has one.
+std::string with_step(std::string command, const std::string& step_s) {
+  const std::string set = "--set step_s=";
+  const std::size_t at = command.find(set);
+  if (at == std::string::npos) return command + " " + set + step_s;
+  const std::size_t value = at + set.size();
+  return command.replace(value, command.find(' ', value) - value, step_s);
+}
+
+}  // namespace
+
 std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.fitted()) return "";
   const selection::Diagnosis& d = outcome.diagnosis;
@@ -324,8 +337,9 @@ std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.prepared->output.empty()) {
     return present::shell_command({"spoolwatch", "compare", outcome.prepared->output, record});
   }
-  const std::string finer = has_coarse_step(d) ? " --set step_s=" + finer_step_words(d) : "";
-  return outcome.prepared->command + finer + " -o better.toml";
+  const std::string& command = outcome.prepared->command;
+  return (has_coarse_step(d) ? with_step(command, finer_step_words(d)) : command) +
+         " -o better.toml";
 }
 
 std::string split_words(const DiagnosisReport& outcome) {

@@ -117,8 +117,9 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, first, innovations, result);
   };
   const FitSummary held = simulated(search, innovations.final.model.fitted);
-  // the search by simulations has ended, that by the likelihood has not begun to
-  if (context.cancelled() && start.branch.stage.fitted.validation_rms_m < held.validation_rms_m) {
+  // the search by simulations has ended, that by the likelihood has not
+  if (context.cancelled() &&
+      start.branch.stage.fitted.validation_rms_m < kFarLess * held.validation_rms_m) {
     result.search = conclude_search(search, std::move(start));
     conclude(context, search, result);
     return;

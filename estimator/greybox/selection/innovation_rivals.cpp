@@ -54,15 +54,40 @@ InnovationStage without(const SearchContext& plain, const InnovationStage& stage
   return exchanged(plain, stage, effect, "", {});
 }
 
+InnovationStage not_above(const SearchContext& plain, InnovationStage stage,
+                          const InnovationStage& bare) {
+  if (plain.cancelled() || !(bare.minus_two_log < stage.minus_two_log)) return stage;
+  disturbance::NoiseModel noise = bare.noise;
+  noise.lines = stage.noise.lines;
+  noise.waves = stage.noise.waves;
+  const ModelStage strayed = stage.model;
+  // the plant as the bare model has it, the effects as they are and absent
+  for (const double share : {1.0, 0.0}) {
+    ModelStage model = strayed;
+    FitSummary& fitted = model.fitted;
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      const FreeParameter& p = fitted.parameters[i];
+      double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
+      const double known = bare.model.fitted.value(p.name);
+      theta =
+          std::clamp(std::isfinite(known) ? p.to_theta(known) : share * theta, p.lower, p.upper);
+    }
+    InnovationStage again =
+        settled(plain, std::move(model), noise, Settling::once, wide(plain.options.threads));
+    if (again.minus_two_log < stage.minus_two_log) stage = std::move(again);
+  }
+  return stage;
+}
+
 std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
-                                       double evidence_nats) {
+                                       const InnovationStage& bare, double evidence_nats) {
   std::vector<InnovationStage> without;
   bool dropped = true;
   while (dropped && stage.model.added.size() > 1 && !plain.cancelled()) {
     dropped = false;
     without.clear();
     for (const std::string& effect : stage.model.added) {
-      without.push_back(exchanged(plain, stage, effect, "", {}));
+      without.push_back(not_above(plain, exchanged(plain, stage, effect, "", {}), bare));
       const double loss = 0.5 * (without.back().minus_two_log - stage.minus_two_log) -
                           penalty_nats(stage.model.fitted, without.back().model.fitted);
       if (loss >= evidence_nats) continue;

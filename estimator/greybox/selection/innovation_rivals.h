@@ -23,10 +23,15 @@ struct InnovationRivals {
 [[nodiscard]] InnovationStage without(const SearchContext& plain, const InnovationStage& stage,
                                       const std::string& effect);
 
+/// The stage, or where it is less likely than the model `bare` without effects, which it contains,
+/// the likelier of it and its fits from there.
+[[nodiscard]] InnovationStage not_above(const SearchContext& plain, InnovationStage stage,
+                                        const InnovationStage& bare);
+
 /// Removes effects whose absence costs less than they are worth. Returns the stage without each of
-/// those that stay; without the only one it is not known.
+/// those that stay; without the only one it is not known. `bare`: the model without effects.
 std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
-                                       double evidence_nats);
+                                       const InnovationStage& bare, double evidence_nats);
 
 /// The final stage with other effects in the place of one, the most promising first, the other
 /// effect the last of `added`; each settled, and polished where it may be level. Effects that leave

@@ -91,33 +91,7 @@ InnovationStage stage_without(const SearchContext& context, const InnovationSear
   if (search.without.size() > i) return search.without[i];
   const bool only = final.model.added.size() == 1 && std::isfinite(search.bare.minus_two_log);
   if (only && final.noise.lines.size() == search.bare.noise.lines.size()) return search.bare;
-  return without(context, final, final.model.added[i]);
-}
-
-/// The stages that remain without one effect each, of which none may be less likely than the model
-/// without effects, which it contains: one that is has strayed, and starts again from there.
-std::vector<InnovationStage> without_each(const SearchContext& context,
-                                          const InnovationStage& before, double evidence_nats,
-                                          InnovationStage& stage) {
-  std::vector<InnovationStage> without = eliminate(context, stage, evidence_nats);
-  for (InnovationStage& one : without) {
-    if (context.cancelled() || !(before.minus_two_log < one.minus_two_log)) continue;
-    ModelStage model = one.model;
-    FitSummary& fitted = model.fitted;
-    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-      const FreeParameter& p = fitted.parameters[i];
-      const double known = before.model.fitted.value(p.name);
-      fitted.theta[static_cast<Eigen::Index>(i)] =
-          std::isfinite(known) ? std::clamp(p.to_theta(known), p.lower, p.upper) : 0.0;
-    }
-    disturbance::NoiseModel noise = before.noise;
-    noise.lines = one.noise.lines;
-    noise.waves = one.noise.waves;
-    InnovationStage again =
-        settled(context, std::move(model), noise, Settling::once, wide(context.options.threads));
-    if (again.minus_two_log < one.minus_two_log) one = std::move(again);
-  }
-  return without;
+  return not_above(context, without(context, final, final.model.added[i]), search.before);
 }
 
 /// Exchanges an effect for a likelier one: false where there is none. What was chosen while lines
@@ -306,7 +280,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!search.ended_early && !went_on_from_held)
     take_held(context, held.stage, evidence_nats(), stage, search.rounds);
   for (int round = 0; !search.ended_early && !context.cancelled(); ++round) {
-    search.without = without_each(context, search.before, evidence_nats(), stage);
+    search.without = eliminate(context, stage, search.before, evidence_nats());
     if (round == kMostExchanges || !exchange(context, search, stage)) break;
     extend_fully();
   }
@@ -315,7 +289,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   reconsider_second_mass(context, stage);
   if (stage.minus_two_log < found) {
     search.rivals.clear();
-    search.without = without_each(context, search.before, evidence_nats(), stage);
+    search.without = eliminate(context, stage, search.before, evidence_nats());
   }
   search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);

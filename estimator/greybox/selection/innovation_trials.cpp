@@ -1,13 +1,13 @@
 #include "estimator/greybox/selection/innovation_trials.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "estimator/greybox/selection/likeliest_start.h"
 #include "estimator/greybox/selection/screening_memo.h"
-#include "estimator/greybox/selection/settled_memo.h"
 #include "estimator/greybox/sensor_place.h"
 #include "estimator/parallel.h"
 
@@ -116,6 +116,7 @@ std::string definition_of(const SearchContext& context, const std::string& effec
   const std::vector<plant_sim::EffectInfo>& all = context.problem.candidate_effects;
   const auto info = std::find_if(all.begin(), all.end(),
                                  [&](const auto& candidate) { return candidate.name == effect; });
+  assert(info != all.end());
   return ScreeningMemo::key_of(context, *info);
 }
 
@@ -181,8 +182,10 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   in_parallel(starts.size(), context.options.threads, [&](std::size_t k) {
     if (context.cancelled()) return;
     starts[k].fitted = known_or(context, starts[k].key, [&] {
-      return fit_innovations(context, *starts[k].parameters, SimulationWidth{},
-                             InnovationFit::quick);
+      FitSummary quick =
+          fit_innovations(context, *starts[k].parameters, SimulationWidth{}, InnovationFit::quick);
+      quick.jacobian.resize(0, 0);
+      return quick;
     });
   });
   std::vector<InnovationTrial> trials(screened.size());
@@ -214,8 +217,7 @@ namespace {
 ModelStage with_observer(const SearchContext& plain, const ModelStage& model) {
   const ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
   const std::string key =
-      plain.screenings ? SettledMemo::key_of(plain, model, {}, Settling::once, SimulationWidth{})
-                       : std::string();
+      plain.screenings ? ScreeningMemo::key_of_fit(plain, model) : std::string();
   return {model.added, known_or(plain, key, [&] {
             return fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask,
                        all.parameters, all.start,

@@ -37,7 +37,7 @@ class KeyBytes {
   std::string bytes_;
 };
 
-/// Hash after FNV-1a, of words in the place of bytes; records of equal hashes are taken for equal.
+/// Hash after FNV-1a, of words instead of bytes; records of equal hashes are taken for equal.
 class RecordHash {
  public:
   void add(double value) {

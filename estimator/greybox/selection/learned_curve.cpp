@@ -236,8 +236,8 @@ void fit_attempts(const SearchContext& context, const InnovationStage& stage, st
 
 std::size_t points(const Attempt& attempt) { return attempt.effect.curve->x.size(); }
 
-/// True where another model explains far more of the record: what leaves nothing unexplained is not
-/// that much less likely than what does.
+/// True where another model explains far more of the record: a curve that is the law is not
+/// hundreds of nats behind one that is not.
 bool is_far_behind(const SearchContext& context, const InnovationStage& curve,
                    const InnovationStage& without) {
   if (!context.memo) return false;
@@ -283,7 +283,9 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
 /// and lines do not make up for it.
 bool leaves_too_much(const Attempt& curve, const InnovationStage& without) {
   const double gain_nats = 0.5 * (penalised(without) - penalised(curve.stage));
-  if (!leaves_much_physics(curve.stage, kInexactCurves * std::max(0.0, gain_nats))) return false;
+  const double inexact_nats =
+      kInexactCurves * (std::max(0.0, gain_nats) + curve.context.problem.interpolated_nats);
+  if (!leaves_much_physics(curve.stage, inexact_nats)) return false;
   const std::vector<ScoredLine> lines = line_candidates(curve.context, curve.stage);
   return lines.empty() || lines.front().gain_nats < largest_curve_nats(curve.stage);
 }

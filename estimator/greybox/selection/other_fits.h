@@ -9,7 +9,7 @@ namespace estimator::greybox::selection {
 
 struct OtherStart {
   ParameterSubset start;
-  double least_fall = 0.0;  ///< -2 log L has to fall by it, and by more for each parameter more
+  double least_fall = 0.0;  ///< least fall of -2 log L without further parameters
 };
 
 /// The likeliest of `fitted` and the fits from other starts. Each has a quick look, and is followed

@@ -1,8 +1,8 @@
 #include "estimator/greybox/selection/packed_linearisation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
-#include <utility>
 
 namespace estimator::greybox::selection {
 namespace {
@@ -38,7 +38,7 @@ std::vector<Matrix> unpacked(const std::vector<std::vector<double>>& entries, st
   return all;
 }
 
-std::size_t count(const std::vector<std::vector<double>>& entries) {
+std::size_t numbers_in(const std::vector<std::vector<double>>& entries) {
   std::size_t sum = 0;
   for (const std::vector<double>& entry : entries) sum += entry.size();
   return sum;
@@ -46,15 +46,17 @@ std::size_t count(const std::vector<std::vector<double>>& entries) {
 
 }  // namespace
 
-PackedLinearisation::PackedLinearisation(disturbance::Linearisation linear)
-    : samples_(std::max(linear.transition.size(), linear.from_supply.size())),
+PackedLinearisation::PackedLinearisation(const disturbance::Linearisation& linear)
+    : samples_(linear.transition.size()),
       transition_(packed(linear.transition)),
       from_supply_(packed(linear.from_supply)) {
-  linear.transition.clear();
-  linear.transition.shrink_to_fit();
-  linear.from_supply.clear();
-  linear.from_supply.shrink_to_fit();
-  rest_ = std::move(linear);
+  assert(linear.from_supply.size() == samples_);
+  rest_.states = linear.states;
+  rest_.force = linear.force;
+  rest_.supply = linear.supply;
+  rest_.force_place = linear.force_place;
+  rest_.speed_mps = linear.speed_mps;
+  rest_.gap_m = linear.gap_m;
 }
 
 disturbance::Linearisation PackedLinearisation::unpacked() const {
@@ -65,8 +67,8 @@ disturbance::Linearisation PackedLinearisation::unpacked() const {
 }
 
 std::size_t PackedLinearisation::size_bytes() const {
-  return sizeof(double) *
-         (count(transition_) + count(from_supply_) + rest_.speed_mps.size() + rest_.gap_m.size());
+  return sizeof(double) * (numbers_in(transition_) + numbers_in(from_supply_) +
+                           rest_.speed_mps.size() + rest_.gap_m.size());
 }
 
 }  // namespace estimator::greybox::selection

@@ -1,5 +1,5 @@
-// A linearisation without what is the same at all samples: of the 49 entries of a transition most
-// plants move fewer than half.
+// A linearisation that keeps an entry once where all samples have it: most plants move fewer than
+// half of the 49 entries of a transition.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace estimator::greybox::selection {
 
 class PackedLinearisation {
  public:
-  explicit PackedLinearisation(disturbance::Linearisation linear);
+  explicit PackedLinearisation(const disturbance::Linearisation& linear);
 
   /// The linearisation, bit for bit.
   [[nodiscard]] disturbance::Linearisation unpacked() const;

@@ -1,26 +1,26 @@
 #include "estimator/greybox/selection/screening_memo.h"
 
-#include <algorithm>
 #include <span>
 
 #include "estimator/greybox/selection/key_bytes.h"
+#include "estimator/greybox/selection/settled_memo.h"
 
 namespace estimator::greybox::selection {
 namespace {
 
-std::size_t size_bytes_of(const std::vector<FreeParameter>& parameters) {
+std::size_t kept_bytes(const std::vector<FreeParameter>& parameters) {
   return parameters.size() * (sizeof(FreeParameter) + sizeof(double));
 }
 
-std::size_t size_bytes_of(const ScreeningResult& result) {
+std::size_t kept_bytes(const ScreeningResult& result) {
   std::size_t sum = sizeof result;
-  for (const ParameterSubset& start : result.starts) sum += size_bytes_of(start.parameters);
+  for (const ParameterSubset& start : result.starts) sum += kept_bytes(start.parameters);
   return sum;
 }
 
-std::size_t size_bytes_of(const FitSummary& fit) {
+std::size_t kept_bytes(const FitSummary& fit) {
   const auto numbers = static_cast<std::size_t>(fit.residual_m.size() + fit.jacobian.size());
-  return sizeof fit + size_bytes_of(fit.parameters) + sizeof(double) * numbers;
+  return sizeof fit + kept_bytes(fit.parameters) + sizeof(double) * numbers;
 }
 
 }  // namespace
@@ -34,12 +34,28 @@ std::string ScreeningMemo::key_of(const SearchContext& context, const ModelStage
   add_all(fitted.residual_m);
   add_all(fitted.jacobian);
   add_all(context.problem.data.training_mask);
+  add_all(context.problem.data.validation_mask);
+  add_all(with_file_values(context, stage));
+  hash.add(fitted.sigma_m);
+  hash.add(context.problem.data.noise_floor_m);
   KeyBytes key;
   key.add(hash.value());
   key.add(context.problem.trial_sizes);
   add(key, fitted.parameters);
   key.add(
       std::span<const double>(fitted.theta.data(), static_cast<std::size_t>(fitted.theta.size())));
+  return key.bytes();
+}
+
+std::string ScreeningMemo::key_of_fit(const SearchContext& plain, const ModelStage& model) {
+  RecordHash hash;
+  for (const Eigen::VectorXd* mask :
+       {&plain.problem.data.training_mask, &plain.problem.data.validation_mask}) {
+    hash.add(std::span<const double>(mask->data(), static_cast<std::size_t>(mask->size())));
+  }
+  KeyBytes key;
+  key.add(SettledMemo::key_of(plain, model, {}, Settling::once, SimulationWidth{}));
+  key.add(hash.value());
   return key.bytes();
 }
 
@@ -68,9 +84,9 @@ std::optional<T> ScreeningMemo::find(const Kept<T>& kept, const std::string& key
 template <class T>
 void ScreeningMemo::keep(Kept<T>& kept, const std::string& key, const T& result) {
   const std::lock_guard lock(mutex_);
-  kept.size_bytes += key.size() + size_bytes_of(result);
-  if (kept.size_bytes > kMost_bytes) kept = {};
-  kept.results.insert_or_assign(key, result);
+  const std::size_t own_bytes = key.size() + kept_bytes(result);
+  if (kept.size_bytes + own_bytes > kMost_bytes) kept = {};
+  if (kept.results.try_emplace(key, result).second) kept.size_bytes += own_bytes;
 }
 
 std::optional<ScreeningResult> ScreeningMemo::screened(const std::string& key) {

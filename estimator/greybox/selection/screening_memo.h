@@ -16,9 +16,12 @@ namespace estimator::greybox::selection {
 /// whether it is kept never changes an answer.
 class ScreeningMemo {
  public:
-  /// Bytes of what screening any effect beside the stage depends on: data and gains by the
-  /// residuals and the Jacobian that they lead to.
+  /// Bytes of everything that screening an effect beside the stage depends on: records and gains by
+  /// the residuals and the Jacobian that they lead to.
   [[nodiscard]] static std::string key_of(const SearchContext& context, const ModelStage& stage);
+  /// Bytes of everything that a fit of the model to the training samples in a simulation depends
+  /// on.
+  [[nodiscard]] static std::string key_of_fit(const SearchContext& plain, const ModelStage& model);
   /// Bytes of the effect's definition in the model.
   [[nodiscard]] static std::string key_of(const SearchContext& context,
                                           const plant_sim::EffectInfo& effect);
@@ -30,7 +33,7 @@ class ScreeningMemo {
   void keep(const std::string& key, const FitSummary& fit);
 
  private:
-  /// What is kept under its key, all dropped when it takes more than kMost_bytes.
+  /// Results under their keys; all are dropped when they take more than kMost_bytes.
   template <class T>
   struct Kept {
     std::map<std::string, T> results;

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "estimator/greybox/innovation_gains.h"
+#include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/key_bytes.h"
 
@@ -166,7 +168,8 @@ void SettledMemo::keep(const SearchContext& plain, const std::string& key,
   kept->stage.minus_two_log = stage.minus_two_log;
   const std::uint64_t records = hash_of(plain.problem.data);
   const std::lock_guard lock(mutex_);
-  if (stage.noise.lines.empty()) {
+  if (stage.noise.lines.empty() && stage.model.added.size() < kStandIn &&
+      effect_out_of_range(stage).empty()) {
     double& least = least_.try_emplace(records, penalised(stage)).first->second;
     least = std::min(least, penalised(stage));
   }

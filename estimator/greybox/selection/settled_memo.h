@@ -17,8 +17,7 @@
 
 namespace estimator::greybox::selection {
 
-/// Calls from several threads are safe. A stage that is found has the bits of one settled anew:
-/// whether it is kept never changes an answer.
+/// Calls from several threads are safe. A stage that is found has the bits of one settled anew.
 class SettledMemo {
  public:
   /// Bytes of everything that settled() depends on: records, model with the effects in use,
@@ -35,8 +34,9 @@ class SettledMemo {
   /// the longest while all take more than `most_bytes`.
   void keep(const SearchContext& plain, const std::string& key, const InnovationStage& stage);
 
-  /// The least -2 log L, with its penalty, of the stages without spectral lines that were kept for
-  /// the records of `plain`; infinite: none.
+  /// The least -2 log L, with its penalty, that a model for the records of `plain` has been kept
+  /// with: one without spectral lines, of effects in their range, too few to stand in for a law.
+  /// Infinite: none.
   [[nodiscard]] double least_minus_two_log(const SearchContext& plain);
 
   [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }

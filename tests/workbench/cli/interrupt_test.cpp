@@ -1,4 +1,4 @@
-// What signals do while something long runs, in a process of its own each time.
+// Signals while something long runs, each time in a process of its own.
 #include "workbench/cli/interrupt.h"
 
 #include <gtest/gtest.h>

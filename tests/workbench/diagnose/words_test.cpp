@@ -68,6 +68,21 @@ TEST(Words, APriorOfAnEffectThatWasAddedIsNoValueOfTheFile) {
   EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("standard deviations of its prior"))));
 }
 
+TEST(Words, ValuesFarFromTheFilesShareASentence) {
+  ExampleReport outcome;
+  selection::ParameterValue damping = outcome.diagnosis.parameters.front();
+  ASSERT_EQ(damping.name, "damping_N_s_per_m");
+  outcome.diagnosis.parameters.front().prior_sds = 3.1;
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("damping_N_s_per_m ends 3.1 standard deviations "
+                                                   "of its prior above the file's value")));
+  damping.name = "mass_kg";
+  damping.prior_sds = -2.6;
+  outcome.diagnosis.parameters.push_back(damping);
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("damping_N_s_per_m 3.1 above, mass_kg 2.6 below. The file")));
+  EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("standard deviations of its prior "))));
+}
+
 TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
   ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
@@ -86,7 +101,11 @@ TEST(Words, AnEffectThatWasRefusedMayLowerTheError) {
   outcome.diagnosis.search.refused = {{{"friction"}, 2.5e-6, selection::Refusal::unlikely}};
   EXPECT_THAT(verdict_words(outcome.diagnosis),
               testing::Not(HasSubstr("no effect of the library lowers it")));
-  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("Not taken: friction")));
+  EXPECT_THAT(remarks(outcome),
+              Contains(AllOf(HasSubstr("Not taken: friction"), HasSubstr("next sample better"))));
+  outcome.diagnosis.disturbance = selection::Disturbance{};
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("a disturbance explains the samples better")));
+  outcome.diagnosis.disturbance.reset();
   outcome.diagnosis.search.refused.clear();
   EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("no effect of the library lowers it"));
 }
@@ -263,6 +282,18 @@ TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' bench.csv");
   outcome.input.holdouts = {"other.csv"};
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' other.csv");
+}
+
+TEST(Words, NextCommandTakesAFinerStepWhereTheStepIsCoarse) {
+  ExampleReport outcome;
+  outcome.diagnosis.better.step_s = 0.001;
+  outcome.diagnosis.noise_floor_m = 1e-6;
+  outcome.diagnosis.step_error_m = 1e-5;
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch diagnose rig.toml bench.csv --set step_s=0.00025 -o better.toml");
+  outcome.input.command = "spoolwatch diagnose rig.toml --set step_s=0.001 bench.csv";
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch diagnose rig.toml --set step_s=0.00025 bench.csv -o better.toml");
 }
 
 TEST(Words, StepsNameWhatChangesAndInWhichRecord) {

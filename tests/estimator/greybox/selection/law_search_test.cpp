@@ -126,6 +126,21 @@ TEST(Laws, ASearchEndsWhereItsLimitsSay) {
   EXPECT_TRUE(found.ended_early);
 }
 
+// Left with the damping that stood beside an offset, a fit strays far above the model without both.
+TEST(Laws, NoStageWithoutAnEffectIsLessLikelyThanTheModelWithoutAny) {
+  const SearchContext context = diagnose_test::context_of(
+      "motion=multisine,length_s=10,null_bias.offset_V=0.1,left_out=cubic_damping", 86);
+  const std::optional<LawSearch> found =
+      search_laws(context, first_stage(context), "", {"null_bias"}, LawChoice::beside_effects, 3);
+  ASSERT_TRUE(found);
+  const InnovationSearch& search = found->innovations;
+  EXPECT_THAT(search.final.model.added,
+              testing::UnorderedElementsAre("null_bias", "cubic_damping"));
+  ASSERT_THAT(search.without, SizeIs(2));
+  for (const InnovationStage& one : search.without)
+    EXPECT_LT(one.minus_two_log, search.before.minus_two_log);
+}
+
 /// The stage with these effects alone, fitted to the record, and what an early law makes of it.
 struct EarlyLaw {
   bool much = false;  ///< what they leave

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "estimator/greybox/law_curve.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/settled_memo.h"
 #include "plant_sim/library.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 
@@ -48,6 +50,20 @@ TEST(LearnedCurve, ALawOfNoFormulaStaysACurve) {
     if (curve.share[i] < 0.005) continue;
     EXPECT_NEAR(x_mps + curve.f[i], kServoGain * waved_V(x_mps / gain), kClose_mps);
   }
+}
+
+TEST(LearnedCurve, NoneIsFollowedWhereAnotherModelExplainsFarMore) {
+  SearchContext context = servo_context(
+      {.rate_mps = [](double u_V, double, double) { return kServoGain * waved_V(u_V); },
+       .samples = 2400});
+  const ModelStage first = first_stage(context);
+  context.memo = std::make_shared<SettledMemo>();
+  ASSERT_TRUE(search_curve(context, first));
+  InnovationStage other = settled(context, first, {}, Settling::fully, wide(2));
+  const double gained = penalised(other) - context.memo->least_minus_two_log(context);
+  other.minus_two_log -= 3.0 * gained;
+  context.memo->keep(context, "another", other);
+  EXPECT_FALSE(search_curve(context, first));
 }
 
 TEST(LearnedCurve, NoneIsFoundWhereNothingIsMissing) {

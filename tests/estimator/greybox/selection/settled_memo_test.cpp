@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -92,6 +93,26 @@ TEST(SettledMemo, DropsWhatWasNotAskedForTheLongest) {
   EXPECT_FALSE(memo.find(context, "b"));
   EXPECT_TRUE(memo.find(context, "c"));
   EXPECT_EQ(memo.size_bytes(), 2 * large.size_bytes());
+}
+
+TEST(SettledMemo, KnowsTheLikeliestStageWithoutLinesOfARecord) {
+  const SearchContext context = short_record(17);
+  InnovationStage stage = settled_once(context, first_stage(context));
+  SettledMemo memo;
+  EXPECT_TRUE(std::isinf(memo.least_minus_two_log(context)));
+  memo.keep(context, "a", stage);
+  const double first = penalised(stage);
+  stage.minus_two_log += 10.0;
+  memo.keep(context, "b", stage);
+  EXPECT_EQ(memo.least_minus_two_log(context), first);
+  stage.minus_two_log -= 30.0;
+  memo.keep(context, "c", stage);
+  EXPECT_EQ(memo.least_minus_two_log(context), first - 20.0);
+  stage.minus_two_log -= 100.0;
+  stage.noise.lines.push_back({disturbance::LineSite::force, 20.0});
+  memo.keep(context, "d", stage);
+  EXPECT_EQ(memo.least_minus_two_log(context), first - 20.0) << "with a line";
+  EXPECT_TRUE(std::isinf(memo.least_minus_two_log(short_record(18)))) << "another record";
 }
 
 // A candidate that is declared and not used changes nothing.
