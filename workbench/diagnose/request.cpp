@@ -139,6 +139,15 @@ void part_from_candidates(const DiagnosisRequest& request, selection::DiagnosisP
   }
 }
 
+std::vector<std::string> reading_options(const DiagnosisRequest& request) {
+  std::vector<std::string> options;
+  if (!request.reading.map.empty()) options.insert(options.end(), {"--map", request.reading.map});
+  if (!request.reading.resample.empty())
+    options.push_back("--resample=" + request.reading.resample);
+  for (const std::string& span : request.ignored) options.insert(options.end(), {"--ignore", span});
+  return options;
+}
+
 }  // namespace
 
 PreparedDiagnosis prepare(const DiagnosisRequest& request) {
@@ -177,6 +186,8 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   prepared.holdouts = request.holdouts;
   prepared.output = request.output;
   prepared.command = request.command;
+  prepared.reading_options = reading_options(request);
+  prepared.flip = request.flip;
   return prepared;
 }
 

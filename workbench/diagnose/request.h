@@ -44,6 +44,9 @@ struct PreparedDiagnosis {
   std::vector<std::string> holdouts;  ///< as given: scored only
   std::string output;                 ///< file of the better model; empty: none is written
   std::string command;                ///< shell command that repeats this diagnosis
+  /// Options with which `compare` reads a record as it was read here.
+  std::vector<std::string> reading_options;
+  bool flip = false;  ///< the commands have the other sign: `compare` has no option for it
   greybox::Split split = greybox::Split::blocks;
 };
 

@@ -331,15 +331,19 @@ std::string with_step(std::string command, const std::string& step_s) {
 std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.fitted()) return "";
   const selection::Diagnosis& d = outcome.diagnosis;
-  const std::string& record = outcome.prepared->holdouts.empty()
-                                  ? outcome.prepared->records.front()
-                                  : outcome.prepared->holdouts.front();
-  if (!outcome.prepared->output.empty()) {
-    return present::shell_command({"spoolwatch", "compare", outcome.prepared->output, record});
+  const PreparedDiagnosis& input = *outcome.prepared;
+  const std::string output = input.output.empty() ? " -o better.toml" : "";
+  if (d.checks && d.checks->turned_sign()) return input.command + " --flip" + output;
+  if (input.output.empty()) {
+    return (has_coarse_step(d) ? with_step(input.command, finer_step_words(d)) : input.command) +
+           output;
   }
-  const std::string& command = outcome.prepared->command;
-  return (has_coarse_step(d) ? with_step(command, finer_step_words(d)) : command) +
-         " -o better.toml";
+  if (input.flip) return "";
+  std::vector<std::string> words{
+      "spoolwatch", "compare", input.output,
+      input.holdouts.empty() ? input.records.front() : input.holdouts.front()};
+  words.insert(words.end(), input.reading_options.begin(), input.reading_options.end());
+  return present::shell_command(words);
 }
 
 std::string split_words(const DiagnosisReport& outcome) {

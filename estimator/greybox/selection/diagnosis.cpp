@@ -14,6 +14,7 @@
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/explained_beyond_effects.h"
 #include "estimator/greybox/selection/file_values.h"
+#include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/record_differences.h"
@@ -174,8 +175,18 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   }
 }
 
+/// True where the likelihood can do without one of the effects: a simulation starts from the
+/// model's own state, and an effect may make up for another one.
+bool can_do_without_one(const SearchContext& context, const InnovationStage& stage) {
+  const std::vector<std::string>& added = stage.model.added;
+  return std::any_of(added.begin(), added.end(), [&](const std::string& effect) {
+    const InnovationStage less = without(context, stage, effect);
+    return 0.5 * (penalised(less) - penalised(stage)) < kEvidence_nats;
+  });
+}
+
 /// True where noise explains what a stage leaves, by its size. Where several effects may stand in
-/// for one law, its course over the motion must be that of noise too.
+/// for one law, its course over the motion must be that of noise too, and each must be needed.
 bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
   if (!is_explained(context, stage)) return false;
   if (stage.added.size() < 2) return true;
@@ -186,7 +197,7 @@ bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
     search.final = settled(context, stage, {}, effort, wide(context.options.threads));
     if (!std::isfinite(search.final.minus_two_log)) return true;
     weigh_remainder(context, search);
-    if (!search.physics_missing()) return true;
+    if (!search.physics_missing()) return !can_do_without_one(context, search.final);
   }
   return false;
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
 
@@ -46,9 +49,7 @@ double gain_nats(const InnovationStage& stage, const MatrixXd& columns) {
   return 0.5 * (explained(all.cols()) - explained(own));
 }
 
-}  // namespace
-
-std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
+std::vector<CurveGain> curve_gains_anew(const InnovationStage& stage) {
   const ResidualVariables all = variables(stage.context, stage.model);
   struct Attempt {
     const Variable* variable;
@@ -77,6 +78,18 @@ std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
         {site_of(attempt.input), attempt.variable->name, attempt.gain_nats, attempt.input});
   }
   return gains;
+}
+
+}  // namespace
+
+std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
+  const SearchContext& context = stage.context;
+  if (!context.screenings) return curve_gains_anew(stage);
+  const std::string key = ScreeningMemo::key_of(context, stage.model);
+  if (auto known = context.screenings->curves(key)) return *std::move(known);
+  std::vector<CurveGain> anew = curve_gains_anew(stage);
+  if (!context.cancelled()) context.screenings->keep(key, anew);
+  return anew;
 }
 
 double largest_curve_nats(const InnovationStage& stage) {

@@ -18,6 +18,10 @@ std::size_t kept_bytes(const ScreeningResult& result) {
   return sum;
 }
 
+std::size_t kept_bytes(const std::vector<CurveGain>& gains) {
+  return gains.size() * sizeof(CurveGain);
+}
+
 std::size_t kept_bytes(const FitSummary& fit) {
   const auto numbers = static_cast<std::size_t>(fit.residual_m.size() + fit.jacobian.size());
   return sizeof fit + kept_bytes(fit.parameters) + sizeof(double) * numbers;
@@ -95,6 +99,14 @@ std::optional<ScreeningResult> ScreeningMemo::screened(const std::string& key) {
 
 void ScreeningMemo::keep(const std::string& key, const ScreeningResult& result) {
   keep(screened_, key, result);
+}
+
+std::optional<std::vector<CurveGain>> ScreeningMemo::curves(const std::string& key) {
+  return find(curves_, key);
+}
+
+void ScreeningMemo::keep(const std::string& key, const std::vector<CurveGain>& gains) {
+  keep(curves_, key, gains);
 }
 
 std::optional<FitSummary> ScreeningMemo::fitted(const std::string& key) {

@@ -7,7 +7,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/screening.h"
 
 namespace estimator::greybox::selection {
@@ -28,6 +30,9 @@ class ScreeningMemo {
 
   [[nodiscard]] std::optional<ScreeningResult> screened(const std::string& key);
   void keep(const std::string& key, const ScreeningResult& result);
+  /// Gains of curves beside a stage, under its own key.
+  [[nodiscard]] std::optional<std::vector<CurveGain>> curves(const std::string& key);
+  void keep(const std::string& key, const std::vector<CurveGain>& gains);
   /// Fits of screened effects, and of the models beside which they were screened.
   [[nodiscard]] std::optional<FitSummary> fitted(const std::string& key);
   void keep(const std::string& key, const FitSummary& fit);
@@ -47,6 +52,7 @@ class ScreeningMemo {
   static constexpr std::size_t kMost_bytes = std::size_t{64} << 20U;
   std::mutex mutex_;
   Kept<ScreeningResult> screened_;
+  Kept<std::vector<CurveGain>> curves_;
   Kept<FitSummary> fitted_;
 };
 

@@ -282,6 +282,18 @@ TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' bench.csv");
   outcome.input.holdouts = {"other.csv"};
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' other.csv");
+  outcome.input.reading_options = {"--map", "u=cmd[V]", "--ignore", "3:4"};
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch compare 'my rig.toml' other.csv --map 'u=cmd[V]' --ignore 3:4");
+  outcome.input.flip = true;
+  EXPECT_EQ(next_command(outcome), "") << "compare would read the other sign";
+}
+
+TEST(Words, NextCommandTurnsATurnedSign) {
+  ExampleReport outcome;
+  outcome.diagnosis.checks.emplace();
+  outcome.diagnosis.checks->turned_sign_ratio = 100.0;
+  EXPECT_EQ(next_command(outcome), "spoolwatch diagnose rig.toml bench.csv --flip -o better.toml");
 }
 
 TEST(Words, NextCommandTakesAFinerStepWhereTheStepIsCoarse) {
