@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/linear_algebra/decompositions.h"
@@ -84,12 +83,9 @@ std::vector<CurveGain> curve_gains_anew(const InnovationStage& stage) {
 
 std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
   const SearchContext& context = stage.context;
-  if (!context.screenings) return curve_gains_anew(stage);
-  const std::string key = ScreeningMemo::key_of(context, stage.model);
-  if (auto known = context.screenings->curves(key)) return *std::move(known);
-  std::vector<CurveGain> anew = curve_gains_anew(stage);
-  if (!context.cancelled()) context.screenings->keep(key, anew);
-  return anew;
+  const std::string key =
+      context.screenings ? ScreeningMemo::key_of(context, stage.model) : std::string();
+  return known_or<std::vector<CurveGain>>(context, key, [&] { return curve_gains_anew(stage); });
 }
 
 double largest_curve_nats(const InnovationStage& stage) {

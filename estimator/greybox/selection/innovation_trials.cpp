@@ -120,16 +120,6 @@ std::string definition_of(const SearchContext& context, const std::string& effec
   return ScreeningMemo::key_of(context, *info);
 }
 
-/// The fit that is known under the key, or `fitted()` anew.
-template <class Fit>
-FitSummary known_or(const SearchContext& context, const std::string& key, const Fit& fitted) {
-  if (!context.screenings) return fitted();
-  if (auto known = context.screenings->fitted(key)) return *std::move(known);
-  FitSummary anew = fitted();
-  if (!context.cancelled()) context.screenings->keep(key, anew);
-  return anew;
-}
-
 bool has_sensor_place(const ParameterSubset& start) {
   return std::any_of(start.parameters.begin(), start.parameters.end(),
                      [](const auto& p) { return p.name == kSecondMassSensorRatio; });
@@ -181,7 +171,7 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   }
   in_parallel(starts.size(), context.options.threads, [&](std::size_t k) {
     if (context.cancelled()) return;
-    starts[k].fitted = known_or(context, starts[k].key, [&] {
+    starts[k].fitted = known_or<FitSummary>(context, starts[k].key, [&] {
       FitSummary quick =
           fit_innovations(context, *starts[k].parameters, SimulationWidth{}, InnovationFit::quick);
       quick.jacobian.resize(0, 0);
@@ -218,7 +208,7 @@ ModelStage with_observer(const SearchContext& plain, const ModelStage& model) {
   const ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
   const std::string key =
       plain.screenings ? ScreeningMemo::key_of_fit(plain, model) : std::string();
-  return {model.added, known_or(plain, key, [&] {
+  return {model.added, known_or<FitSummary>(plain, key, [&] {
             return fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask,
                        all.parameters, all.start,
                        simulation_options(plain, InnovationFit::converged));
@@ -236,7 +226,7 @@ SimulatedEffects simulated_effects(const SearchContext& plain, const ModelStage&
   in_parallel(screened.size(), plain.options.threads, [&](std::size_t i) {
     const std::string& effect = screened[i].effect;
     result.effects[i] = {
-        effect, known_or(plain, beside + definition_of(plain, effect), [&] {
+        effect, known_or<FitSummary>(plain, beside + definition_of(plain, effect), [&] {
           return refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted;
         })};
   });

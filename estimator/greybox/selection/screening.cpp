@@ -279,12 +279,10 @@ std::vector<ScreeningResult> screen(const SearchContext& context, const ModelSta
   const std::string beside =
       context.screenings ? ScreeningMemo::key_of(context, stage) : std::string();
   const auto anew_or_known = [&](const plant_sim::EffectInfo& effect) {
-    if (!context.screenings) return screen_effect(context, stage, bases, projection, effect);
-    const std::string key = beside + ScreeningMemo::key_of(context, effect);
-    if (auto known = context.screenings->screened(key)) return *std::move(known);
-    ScreeningResult anew = screen_effect(context, stage, bases, projection, effect);
-    if (!context.cancelled()) context.screenings->keep(key, anew);
-    return anew;
+    const std::string key =
+        context.screenings ? beside + ScreeningMemo::key_of(context, effect) : std::string();
+    return known_or<ScreeningResult>(
+        context, key, [&] { return screen_effect(context, stage, bases, projection, effect); });
   };
   in_parallel(effects.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;

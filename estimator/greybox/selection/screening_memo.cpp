@@ -79,40 +79,27 @@ std::string ScreeningMemo::key_of(const SearchContext& context,
 }
 
 template <class T>
-std::optional<T> ScreeningMemo::find(const Kept<T>& kept, const std::string& key) {
+std::optional<T> ScreeningMemo::find(const std::string& key) {
   const std::lock_guard lock(mutex_);
+  const Kept<T>& kept = std::get<Kept<T>>(kept_);
   const auto known = kept.results.find(key);
   return known == kept.results.end() ? std::nullopt : std::optional<T>(known->second);
 }
 
 template <class T>
-void ScreeningMemo::keep(Kept<T>& kept, const std::string& key, const T& result) {
-  const std::lock_guard lock(mutex_);
+void ScreeningMemo::keep(const std::string& key, const T& result) {
   const std::size_t own_bytes = key.size() + kept_bytes(result);
+  const std::lock_guard lock(mutex_);
+  Kept<T>& kept = std::get<Kept<T>>(kept_);
   if (kept.size_bytes + own_bytes > kMost_bytes) kept = {};
   if (kept.results.try_emplace(key, result).second) kept.size_bytes += own_bytes;
 }
 
-std::optional<ScreeningResult> ScreeningMemo::screened(const std::string& key) {
-  return find(screened_, key);
-}
-
-void ScreeningMemo::keep(const std::string& key, const ScreeningResult& result) {
-  keep(screened_, key, result);
-}
-
-std::optional<std::vector<CurveGain>> ScreeningMemo::curves(const std::string& key) {
-  return find(curves_, key);
-}
-
-void ScreeningMemo::keep(const std::string& key, const std::vector<CurveGain>& gains) {
-  keep(curves_, key, gains);
-}
-
-std::optional<FitSummary> ScreeningMemo::fitted(const std::string& key) {
-  return find(fitted_, key);
-}
-
-void ScreeningMemo::keep(const std::string& key, const FitSummary& fit) { keep(fitted_, key, fit); }
+template std::optional<ScreeningResult> ScreeningMemo::find(const std::string&);
+template std::optional<std::vector<CurveGain>> ScreeningMemo::find(const std::string&);
+template std::optional<FitSummary> ScreeningMemo::find(const std::string&);
+template void ScreeningMemo::keep(const std::string&, const ScreeningResult&);
+template void ScreeningMemo::keep(const std::string&, const std::vector<CurveGain>&);
+template void ScreeningMemo::keep(const std::string&, const FitSummary&);
 
 }  // namespace estimator::greybox::selection

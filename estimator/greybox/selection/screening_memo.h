@@ -1,5 +1,5 @@
-// What effects promise beside the stages that a diagnosis has reached. Its searches, each with
-// other candidates, reach the same stages again.
+// A memo of how much effects and curves promise beside the stages that a diagnosis has reached. Its
+// searches, each with other candidates, reach the same stages again.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_curves.h"
@@ -14,8 +16,9 @@
 
 namespace estimator::greybox::selection {
 
-/// Calls from several threads are safe. What is found has the bits of what is computed anew:
-/// whether it is kept never changes an answer.
+/// Calls from several threads are safe. A result that is found has the bits of one computed anew:
+/// whether it is kept never changes an answer. It keeps screened effects, gains of curves, and fits
+/// of screened effects and of the models beside which they were screened.
 class ScreeningMemo {
  public:
   /// Bytes of everything that screening an effect beside the stage depends on: records and gains by
@@ -28,14 +31,11 @@ class ScreeningMemo {
   [[nodiscard]] static std::string key_of(const SearchContext& context,
                                           const plant_sim::EffectInfo& effect);
 
-  [[nodiscard]] std::optional<ScreeningResult> screened(const std::string& key);
-  void keep(const std::string& key, const ScreeningResult& result);
-  /// Gains of curves beside a stage, under its own key.
-  [[nodiscard]] std::optional<std::vector<CurveGain>> curves(const std::string& key);
-  void keep(const std::string& key, const std::vector<CurveGain>& gains);
-  /// Fits of screened effects, and of the models beside which they were screened.
-  [[nodiscard]] std::optional<FitSummary> fitted(const std::string& key);
-  void keep(const std::string& key, const FitSummary& fit);
+  /// T: ScreeningResult, std::vector<CurveGain> or FitSummary.
+  template <class T>
+  [[nodiscard]] std::optional<T> find(const std::string& key);
+  template <class T>
+  void keep(const std::string& key, const T& result);
 
  private:
   /// Results under their keys; all are dropped when they take more than kMost_bytes.
@@ -44,16 +44,20 @@ class ScreeningMemo {
     std::map<std::string, T> results;
     std::size_t size_bytes = 0;
   };
-  template <class T>
-  std::optional<T> find(const Kept<T>& kept, const std::string& key);
-  template <class T>
-  void keep(Kept<T>& kept, const std::string& key, const T& result);
 
   static constexpr std::size_t kMost_bytes = std::size_t{64} << 20U;
   std::mutex mutex_;
-  Kept<ScreeningResult> screened_;
-  Kept<std::vector<CurveGain>> curves_;
-  Kept<FitSummary> fitted_;
+  std::tuple<Kept<ScreeningResult>, Kept<std::vector<CurveGain>>, Kept<FitSummary>> kept_;
 };
+
+/// The result that the context's memo has under the key, or `anew()`.
+template <class T, class Anew>
+T known_or(const SearchContext& context, const std::string& key, const Anew& anew) {
+  if (!context.screenings) return anew();
+  if (auto known = context.screenings->find<T>(key)) return *std::move(known);
+  T result = anew();
+  if (!context.cancelled()) context.screenings->keep(key, result);
+  return result;
+}
 
 }  // namespace estimator::greybox::selection

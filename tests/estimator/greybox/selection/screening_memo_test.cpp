@@ -1,4 +1,4 @@
-// What is kept of a screening is what a screening anew would give.
+// A screening that is kept has the bits of one anew.
 #include "estimator/greybox/selection/screening_memo.h"
 
 #include <gmock/gmock.h>

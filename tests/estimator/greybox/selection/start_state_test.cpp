@@ -23,8 +23,8 @@ plant_sim::ModelFile single_rod() {
   return model;
 }
 
-// The overlap of the valve holds chamber pressures that the model's start does not have: the rate
-// of a spool that turns on later followed the first tenth of a second.
+// The overlap of the valve holds chamber pressures that the model's start does not have. A limit of
+// the spool's rate once followed the first tenth of a second instead.
 TEST(StartState, NoEffectStandsInForIt) {
   const truth::Record truth = truth::simulate(truth::parse_case(
       "rig=single_rod,motion=multisine,length_s=12,deadband.half_width_V=0.4", 92));
