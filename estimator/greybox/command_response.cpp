@@ -139,6 +139,25 @@ std::vector<double> correlations(const Smoothed& s, Index most) {
   return all;
 }
 
+/// Calls visit(smoothed, width) for each width that leaves enough of the samples.
+template <class Visit>
+void at_each_width(const CommandSamples& samples, Visit&& visit) {
+  const auto count = static_cast<std::size_t>(samples.u.size());
+  for (std::size_t w = 1; w <= kMostLags && count / w >= kLeastWindows; w *= 2) {
+    visit(Smoothed(samples, static_cast<Index>(w)), static_cast<Index>(w));
+  }
+}
+
+/// c(0) of the position as the command and the command as the position.
+double exchanged_correlation(const CommandSamples& samples) {
+  double greatest = 0.0;
+  at_each_width({samples.sample_time_s, samples.y, samples.u}, [&](const Smoothed& s, Index) {
+    const double found = correlation(s.v, s.u);
+    if (std::abs(found) > std::abs(greatest)) greatest = found;
+  });
+  return greatest;
+}
+
 }  // namespace
 
 CommandResponse command_response(double sample_time_s, const std::vector<double>& u_V,
@@ -153,18 +172,18 @@ CommandResponse command_response(double sample_time_s, const std::vector<double>
   double best = 0.0;
   Index width = 1;
   std::vector<double> c;
-  for (std::size_t w = 1; w <= kMostLags && count / w >= kLeastWindows; w *= 2) {
-    const Smoothed smoothed(samples, static_cast<Index>(w));
-    std::vector<double> found = correlations(smoothed, most);
+  response.exchanged = exchanged_correlation(samples);
+  at_each_width(samples, [&](const Smoothed& smoothed, Index w) {
+    const std::vector<double> found = correlations(smoothed, most);
     const double at_once = found[static_cast<std::size_t>(most)];
     if (std::abs(at_once) > std::abs(response.correlation)) response.correlation = at_once;
     for (const double value : found) {
       if (std::abs(value) <= std::abs(best)) continue;
       best = value;
-      width = static_cast<Index>(w);
+      width = w;
       c = found;
     }
-  }
+  });
   if (std::abs(best) < kLeastCorrelation) return response;
   const auto left = [&c](std::size_t i) { return 1.0 - c[i] * c[i]; };
   std::size_t at = 0;

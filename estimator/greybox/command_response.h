@@ -19,9 +19,15 @@ namespace estimator::greybox {
 struct CommandResponse {
   double correlation = 0.0;  ///< c(0); 0 for a record too short to tell
   double delay_s = 0.0;  ///< by which the speed is behind the command; below 0: ahead; 0: no shift
+  double exchanged = 0.0;  ///< c(0) of the two columns exchanged
 
   /// The motion feeds the command instead of following it.
   [[nodiscard]] bool against_command() const noexcept { return correlation < -0.7; }
+  /// The command follows the position as a position does its command: the two are exchanged. The
+  /// bounds lie far from both kinds: 49 records as logged have at most -0.15, exchanged 1.00.
+  [[nodiscard]] bool columns_exchanged() const noexcept {
+    return exchanged > 0.9 && correlation < 0.5 && !against_command();
+  }
   /// The command drives the motion: its sign is not turned.
   [[nodiscard]] bool with_command() const noexcept { return correlation > 0.1; }
 };

@@ -5,6 +5,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "workbench/diagnose/verdict_words.h"
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {

@@ -20,6 +20,7 @@ struct DiagnosisReport {
   selection::Diagnosis diagnosis;
   std::string advice;
   bool interrupted = false;
+  bool out_of_time = false;  ///< interrupted by the time limit of the request
   /// Free run from each segment's first sample, all samples; NaN when nothing was fitted.
   double free_run_before_m = std::numeric_limits<double>::quiet_NaN();  ///< the file as it is
   double free_run_after_m = std::numeric_limits<double>::quiet_NaN();   ///< the better model

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 
 namespace workbench::diagnose {
@@ -55,6 +56,12 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
             (p.at_bound ? " (at its bound)" : "");
   }
   return effect + text;
+}
+
+std::string effects_words(const selection::Diagnosis& diagnosis,
+                          const std::vector<std::string>& effects) {
+  const auto text = [&](const std::string& effect) { return effect_words(diagnosis, effect); };
+  return config::schema::joined_by(effects, text, "; ");
 }
 
 }  // namespace workbench::diagnose

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "estimator/greybox/selection/diagnosis.h"
 
@@ -12,5 +13,9 @@ namespace selection = estimator::greybox::selection;
 /// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);
+
+/// Several effects, apart by semicolons.
+[[nodiscard]] std::string effects_words(const selection::Diagnosis& diagnosis,
+                                        const std::vector<std::string>& effects);
 
 }  // namespace workbench::diagnose

@@ -6,6 +6,7 @@
 #include "estimator/greybox/held_scale.h"
 #include "workbench/diagnose/learned_curves.h"
 #include "workbench/diagnose/record_words.h"
+#include "workbench/diagnose/verdict_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/disturbance_json.h"
 #include "workbench/present/held_scale_json.h"

@@ -66,6 +66,7 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
     if (checks.turned_sign()) break;
+    if (checks.columns_exchanged() && i > 0) break;
     if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
     for (const std::string& text :
          present::response_findings(checks.responses[i], records[i].position_column)) {

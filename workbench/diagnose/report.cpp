@@ -10,6 +10,7 @@
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/report_sections.h"
 #include "workbench/diagnose/search_rounds.h"
+#include "workbench/diagnose/verdict_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/record_section.h"
 

@@ -188,6 +188,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   prepared.command = request.command;
   prepared.reading_options = reading_options(request);
   prepared.flip = request.flip;
+  prepared.within_s = request.within_s;
   return prepared;
 }
 

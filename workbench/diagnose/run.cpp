@@ -12,7 +12,9 @@ DiagnosisReport run(PreparedDiagnosis& prepared, const std::function<bool()>& in
   for (const selection::Law& law : report.diagnosis.laws) {
     prepared.problem.model.declare(law.effect, prepared.model_file);
   }
-  report.interrupted = interrupted() || report.diagnosis.search.interrupted;
+  const bool by_user = interrupted();
+  report.interrupted = by_user || report.diagnosis.search.interrupted;
+  report.out_of_time = report.interrupted && !by_user && prepared.within_s > 0.0;
   simulate_freely(report);
   return report;
 }

@@ -11,6 +11,7 @@
 #include "config/units/quantity.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/search_rounds.h"
+#include "workbench/diagnose/verdict_words.h"
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
@@ -94,7 +95,11 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
   const selection::Round& round = d.search.rounds[index];
   out << "\ncandidates of round " << index + 1
       << (d.by_innovations ? " (errors of simulations, p of the likelihood): " : ": ")
-      << config::units::length_words(round.before.fitted.validation_rms_m) << " without any\n";
+      << config::units::length_words(round.before.fitted.validation_rms_m)
+      << (round.before.added.empty()
+              ? " without any"
+              : " with " + config::schema::listed(round.before.added) + " alone")
+      << '\n';
   std::vector<std::string> taken = taken_in(d.search, index);
   std::sort(taken.begin(), taken.end());
   std::size_t shown = 0;

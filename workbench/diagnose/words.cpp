@@ -22,93 +22,13 @@
 namespace workbench::diagnose {
 namespace {
 
-/// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
-std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
-  const bool noise = !d.repetitions_set_floor() && !d.disturbance;
-  return config::units::length_words(rms_m) + " on held-out data, " +
-         config::units::times_words(rms_m / d.floor_m()) + " times " + floor_name(d) +
-         (noise ? " of " : ", ") + config::units::length_words(d.floor_m());
-}
-
-std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
-  const auto text = [&](const std::string& effect) { return effect_words(d, effect); };
-  return config::schema::joined_by(effects, text, "; ");
-}
-
-/// The established effects that no rival disputes.
-std::vector<std::string> undisputed(const selection::Diagnosis& d) {
-  std::vector<std::string> names;
-  for (const std::string& effect : d.established()) {
-    const bool disputed =
-        std::any_of(d.ambiguous.begin(), d.ambiguous.end(), [&](const auto& group) {
-          return std::find(group.begin(), group.end(), effect) != group.end();
-        });
-    if (!disputed) names.push_back(effect);
-  }
-  return names;
-}
-
-std::string undetermined_words(const selection::Diagnosis& d) {
-  if (d.ambiguous.empty()) {
-    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) + ".";
-  }
-  const std::vector<std::string> sure = undisputed(d);
-  return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
-         (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
-}
-
-/// The effect with its value, and the names that are as good.
-std::string effect_or_rivals(const selection::Diagnosis& d, const std::string& effect) {
-  std::string text = effect_words(d, effect);
-  for (const std::vector<std::string>& group : d.same_here) {
-    if (group.front() != effect) continue;
-    const std::vector<std::string> others(group.begin() + 1, group.end());
-    text += " (or " + config::schema::listed(others, "or") + " in its place)";
-  }
-  return text;
-}
-
-std::string missing_words(const selection::Diagnosis& d) {
-  const auto text = [&](const std::string& effect) { return effect_or_rivals(d, effect); };
-  return "Missing: " + config::schema::joined_by(d.established(), text, "; ") + ".";
-}
-
-std::string unexplained_words(const selection::Diagnosis& d) {
-  const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
-  if (d.search.interrupted) {
-    return "Not decided: " +
-           (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
-           rest + ".";
-  }
-  if (d.checks && d.checks->misread()) {
-    return "Unexplained: " + rest +
-           ". What is missing was not sought: read the record as it says "
-           "below first, or, where the file's gain is off, free it with --prior NAME=none.";
-  }
-  const std::vector<std::string> established = d.established();
-  if (established.empty()) {
-    return "Unexplained: " + rest + ", and " +
-           (d.effects_only ? "none of the effects that were to be tried"
-                           : "no effect of the library") +
-           " explains it.";
-  }
-  return "Incomplete: " + config::schema::listed(established) +
-         (established.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
-}
-
-/// "cubic_damping, damping that grows with the cube of the speed: force = ...".
-std::string law_words(const selection::Law& law) {
-  const plant_sim::formula::FormulaSite* site =
-      plant_sim::formula::find_formula_site(law.effect.site);
-  return law.effect.what + ": " + (site == nullptr ? law.effect.site : site->result) + " = " +
-         law.effect.equation();
-}
-
-std::string learned_words(const selection::Diagnosis& d) {
-  std::vector<std::string> laws;
-  for (const selection::Law& law : d.laws) laws.push_back(law_words(law));
-  return "Learned: no effect of the library explains the record, but " +
-         config::schema::joined(laws, "; and ") + ".";
+/// Why a diagnosis ended before everything was tried.
+std::string interruption_words(const DiagnosisReport& outcome) {
+  const std::string rest =
+      "this is the best so far. Not everything was tried, so other effects may do as well";
+  if (!outcome.out_of_time) return "Interrupted: " + rest + ".";
+  return fmt::format("Out of time after the {:g} s of --within: {}; a longer limit may decide.",
+                     outcome.prepared->within_s, rest);
 }
 
 std::string doubt_words(selection::Doubt doubt, bool several) {
@@ -219,33 +139,6 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
                 (one ? "it may be off." : "they may be off."));
 }
 
-std::string verdict_words(const selection::Diagnosis& d) {
-  switch (d.verdict) {
-    case selection::Verdict::nothing_missing:
-      if (d.search.interrupted) {
-        return "Not decided: the model, its own parameters adjusted, is left with " +
-               beside_floor(d, d.rms_after_m) + " so far.";
-      }
-      return "Nothing is missing: the model, its own parameters adjusted, is left with " +
-             beside_floor(d, d.rms_after_m) +
-             (d.search.refused.empty() ? ", and no effect of the library lowers it further."
-                                       : ", and no effect that lowers it further was taken.");
-    case selection::Verdict::missing:
-      return missing_words(d);
-    case selection::Verdict::undetermined:
-      return undetermined_words(d);
-    case selection::Verdict::learned:
-      return learned_words(d);
-    case selection::Verdict::changing:
-      return changing_words(d);
-    case selection::Verdict::unexplained:
-      return unexplained_words(d);
-    case selection::Verdict::not_excited:
-      break;
-  }
-  return "The record cannot tell: " + excitation_words(d.excitation) + ".";
-}
-
 std::string held_words(const DiagnosisReport& outcome) {
   std::vector<std::string> names;
   for (const selection::ParameterValue& p : outcome.diagnosis.parameters) names.push_back(p.name);
@@ -256,9 +149,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<std::string> out;
   if (outcome.interrupted) {
-    out.emplace_back(
-        "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
-        "as well.");
+    out.push_back(interruption_words(outcome));
   }
   for (std::string& text : record_remarks(outcome)) out.push_back(std::move(text));
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
@@ -334,6 +225,7 @@ std::string next_command(const DiagnosisReport& outcome) {
   const PreparedDiagnosis& input = *outcome.prepared;
   const std::string output = input.output.empty() ? " -o better.toml" : "";
   if (d.checks && d.checks->turned_sign()) return input.command + " --flip" + output;
+  if (d.checks && d.checks->misread()) return "";  // the mapping is a question to the user
   if (input.output.empty()) {
     return (has_coarse_step(d) ? with_step(input.command, finer_step_words(d)) : input.command) +
            output;

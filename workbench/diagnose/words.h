@@ -8,9 +8,6 @@
 
 namespace workbench::diagnose {
 
-/// The verdict, one sentence.
-[[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
-
 /// One paragraph each: fall of the error, rivals, site of the remaining error, advice.
 [[nodiscard]] std::vector<std::string> remarks(const DiagnosisReport& outcome);
 

@@ -122,6 +122,12 @@ std::vector<std::string> size_findings(const config::record::Record& record) {
 std::vector<std::string> response_findings(const greybox::CommandResponse& response,
                                            const SourceColumn& position) {
   std::vector<std::string> out;
+  if (response.columns_exchanged()) {
+    return {fmt::format(
+        "command and position look exchanged (the command's speed goes with the position, {:.2f}, "
+        "as a position's does with its command): name the columns the other way round",
+        response.exchanged)};
+  }
   if (response.against_command()) {
     std::string text = fmt::format(
         "the position moves against the command (speed and command correlate by {:.2f}): is a sign "

@@ -6,6 +6,7 @@
 #include "config/units/quantity.h"
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/learned_curves.h"
+#include "workbench/diagnose/verdict_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 #include "workbench/present/text.h"

@@ -181,7 +181,10 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
     result.verdict = Verdict::unexplained;
     list_free_runs(search, result);
     const bool begun = !result.search.rounds.empty();
-    localise_remainder(search, begun ? result.search.rounds.front().before : found, found, result);
+    if (!(result.checks && result.checks->misread())) {
+      localise_remainder(search, begun ? result.search.rounds.front().before : found, found,
+                         result);
+    }
     classify_indistinguishable(search, found, result);
   } else {
     classify_indistinguishable(search, found, result);
@@ -368,6 +371,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       add_line_rivals(without_holdouts(search), innovations.final, *result.disturbance);
     if (!context.cancelled()) result.prediction = prediction_errors(search, innovations);
     take_parameters(innovations.final, result);
+    drop_step_error(result.disturbance, result.step_error_m);
     keep_file_where_better(search, result);
   }
   for (const InnovationRivals& rivals :

@@ -300,6 +300,13 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
+/// Looks at the record itself where the fitted model is far from the noise.
+void check_record(const SearchContext& search, const ModelStage& first, Diagnosis& result) {
+  const double rms_m = first.fitted.validation_rms_m;
+  result.checks.reset();
+  if (rms_m > kFarFromFloor * result.noise_floor_m) result.checks = check_records(search, rms_m);
+}
+
 /// A command acts at the sample at which it is logged, or may act before.
 enum class CommandTimes { as_logged, may_lead };
 
@@ -314,18 +321,13 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   }
   if (times == CommandTimes::may_lead)
     result.command_lead_samples = take_command_lead(context, search, start);
-  if (widen_file_values(search, start, context.problem)) search = for_search(context);
+  const bool widened = widen_file_values(search, start, context.problem);
+  if (widened) search = for_search(context);
   const ModelStage first = start.first;
-  if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
-    result.checks = check_records(search, first.fitted.validation_rms_m);
-  }
+  if (widened || result.command_lead_samples > 0.0) check_record(search, first, result);
   ModelStage likeliest;
-  const bool wrong_record = result.checks && result.checks->misread();
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
-    conclude(context, search, result);
-  } else if (wrong_record) {
-    result.search = abandon_search(search, start);
     conclude(context, search, result);
   } else if (leaves_noise(search, start.branch.stage)) {
     result.search = complete_search(search, std::move(start));
@@ -333,9 +335,8 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   } else if (!find_drift(search, start, result)) {
     weigh_innovations(context, search, std::move(start), result, likeliest);
   }
-  if (!wrong_record && !context.problem.effects_only)
-    look_beyond_effects(search, first, likeliest, result);
-  if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
+  if (!context.problem.effects_only) look_beyond_effects(search, first, likeliest, result);
+  if (result.checks && result.verdict == Verdict::unexplained) {
     result.plants = fit_other_plants(search);
   }
 }
@@ -369,7 +370,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   SearchStart start = start_search(search);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
-  if (!explain_beyond_effects(search, start.first, start.branch.stage, result)) {
+  check_record(search, start.first, result);
+  if (result.checks && result.checks->misread()) {
+    conclude(context, search, result);
+  } else if (!explain_beyond_effects(search, start.first, start.branch.stage, result)) {
     const Diagnosis before = result;
     const SearchContext as_logged = context;
     seek_effects(context, std::move(search), std::move(start), CommandTimes::may_lead, result);

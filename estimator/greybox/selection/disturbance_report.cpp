@@ -13,6 +13,9 @@ using Eigen::Index;
 
 /// A disturbance of less than this share of the sensor's noise, RMS, is none.
 constexpr double kSeen = 0.3;
+/// Random part over the error of the integration step up to which the step causes it. A quarter of
+/// the step shows three quarters of its error and more.
+constexpr double kOfStep = 1.5;
 /// Share of the random part's square above which it is the walk of the reading.
 constexpr double kMostly = 0.5;
 
@@ -119,6 +122,7 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
     result.value = stage.noise.noise.disturbance_sd;
     result.corner_Hz = stage.noise.noise.corner_Hz;
   }
+  result.random_m = std::sqrt(random_m2 / counted);
   result.rms_m = std::sqrt(total_m2 / counted);
   const double error_m =
       rms(simulated(context, stage.model.fitted).residual_m, context.problem.data.all_mask);
@@ -149,6 +153,18 @@ void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
           {site_of(other, other.noise.lines[i].site), std::sqrt(sum / counted)});
     }
   }
+}
+
+void drop_step_error(std::optional<Disturbance>& disturbance, double step_error_m) {
+  if (!disturbance || !(disturbance->random_m <= kOfStep * step_error_m)) return;
+  if (disturbance->lines.empty()) {
+    disturbance.reset();
+    return;
+  }
+  const double lines_m2 = std::pow(disturbance->rms_m, 2) - std::pow(disturbance->random_m, 2);
+  disturbance->share *= std::max(0.0, lines_m2) / std::pow(disturbance->rms_m, 2);
+  disturbance->rms_m = std::sqrt(std::max(0.0, lines_m2));
+  disturbance->random_m = disturbance->value = disturbance->corner_Hz = 0.0;
 }
 
 void limit(Disturbance& disturbance, double rms_m) {

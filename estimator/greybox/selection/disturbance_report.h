@@ -33,6 +33,7 @@ struct Disturbance {
   double rms_m = 0.0;      ///< part of the simulation's error, random part and lines together
   double share = 0.0;      ///< share of the final model's mean squared error
   std::vector<DisturbanceLine> lines;
+  double random_m = 0.0;  ///< the random part's part of the simulation's error
 };
 
 /// Nothing where what is found stays below the sensor's noise.
@@ -43,6 +44,10 @@ struct Disturbance {
 /// and stays as it is, a periodic force and a sensor that vibrates look alike.
 void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
                      Disturbance& disturbance);
+
+/// Takes back a random part no greater than about `step_error_m`, the error of the integration
+/// step, which looks like one; what remains may be nothing.
+void drop_step_error(std::optional<Disturbance>& disturbance, double step_error_m);
 
 /// Limits the disturbance and its lines to `rms_m`, the error that there is: friction and play let
 /// less through than their linearised models do.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/greybox/selection/change_search.h"
+#include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/innovation_curves.h"
@@ -46,6 +47,8 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   const bool law_first = by_laws_nats > std::max(by_effects_nats, by_changes_nats);
   const bool change_first = by_changes_nats > by_effects_nats && !motion_explains_more(stage);
   if (!law_first && !change_first) return false;
+  // a command that changes between the samples of a thinned log passes for much that goes with it
+  if (find_command_lead(context, first, held).samples > 0.0) return false;
   const double held_nats = held_gain_nats(context, stage, held);
   const double beyond_nats = std::max(by_laws_nats, by_changes_nats);
   if (held_nats > kFarMore * beyond_nats ||

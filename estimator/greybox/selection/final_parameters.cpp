@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "estimator/greybox/pressure_scale.h"
 #include "estimator/greybox/selection/innovation_jacobian.h"
@@ -13,6 +14,16 @@
 
 namespace estimator::greybox::selection {
 namespace {
+
+/// Brings each phase within half a turn of zero: a fit may end a turn away.
+void wrap_phases(FitSummary& fitted) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    if (!p.name.ends_with(".phase_rad")) continue;
+    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    theta = p.to_theta(std::remainder(p.to_physical(theta), 2.0 * std::numbers::pi));
+  }
+}
 
 /// `errors` are those of the search values by the fit's own residual. The scatter between halves of
 /// the record and the error of the integration step are added.
@@ -73,6 +84,7 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
     with_observer = true;
   }
   drop_idle_refinements(result.final);
+  wrap_phases(result.final);
   result.better = with_values(context.problem.model, result.final);
   keep_file_where_better(context, result);
   const Eigen::VectorXd& weights = context.problem.data.final_weights();
@@ -91,6 +103,7 @@ void keep_file_where_better(const SearchContext& context, Diagnosis& result) {
 void take_parameters(const InnovationStage& stage, Diagnosis& result) {
   const FitDataset& data = stage.context.problem.data;
   result.final = stage.model.fitted;
+  wrap_phases(result.final);
   result.better = with_values(stage.context.problem.model, result.final);
   FitSummary own = result.final;
   if (!stage.context.cancelled()) {

@@ -178,11 +178,14 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   }
   const GivenMotion given = motion_of(model, data.records.front());
   checks.motion = given.ratio;
-  checks.wrong_scale =
-      scale_error(given.ratio) != ScaleError::none && rms_m > kNotMadeUp * given.rms_m;
+  const bool outsized =
+      checks.stroke_m > 0.0 &&
+      scale_error(checks.low_m, checks.high_m, checks.stroke_m) == ScaleError::thousandfold;
+  checks.wrong_scale = outsized || (scale_error(given.ratio) != ScaleError::none &&
+                                    rms_m > kNotMadeUp * given.rms_m);
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
                                   [](const CommandResponse& r) { return r.with_command(); });
-  if (driven) return checks;
+  if (driven || checks.columns_exchanged()) return checks;
   FitDataset turned = data;
   for (Dataset& record : turned.records) {
     for (double& u_V : record.u_V) u_V = -u_V;

@@ -88,6 +88,17 @@ TEST(CommandResponse, SeesATurnedSign) {
   EXPECT_FALSE(turned(plant(5.0, 20.0, 400.0, 10.0)).response().with_command());
 }
 
+TEST(CommandResponse, SeesExchangedColumns) {
+  for (const Motion& motion :
+       {servo(), plant(0.2, 10.0, 0.0, 0.5), plant(0.0, 10.0, 0.0, 0.5, true)}) {
+    EXPECT_FALSE(motion.response().columns_exchanged());
+    EXPECT_FALSE(turned(motion).response().columns_exchanged());
+  }
+  const Motion exchanged{servo().y, servo().u};
+  EXPECT_TRUE(exchanged.response().columns_exchanged());
+  EXPECT_FALSE(exchanged.response().against_command());
+}
+
 TEST(CommandResponse, SeesThePositionAheadOfItsCommand) {
   for (const int samples : {4, 20, 60}) {
     EXPECT_NEAR(shifted(servo(), samples).response().delay_s, -kTs * samples, 1.01 * kTs);

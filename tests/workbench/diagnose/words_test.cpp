@@ -3,6 +3,7 @@
 #include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/record_words.h"
+#include "workbench/diagnose/verdict_words.h"
 
 #include <gmock/gmock.h>
 
@@ -273,6 +274,9 @@ TEST(Words, InterruptionIsSaidFirst) {
   ExampleReport outcome;
   outcome.interrupted = true;
   EXPECT_THAT(remarks(outcome).front(), HasSubstr("Interrupted: this is the best so far"));
+  outcome.out_of_time = true;
+  outcome.input.within_s = 2.5;
+  EXPECT_THAT(remarks(outcome).front(), HasSubstr("Out of time after the 2.5 s of --within: this"));
 }
 
 TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {

@@ -98,6 +98,12 @@ TEST(RecordFindings, NameASignThatIsTurnedWithTheMapThatTurnsIt) {
   EXPECT_THAT(record_findings(record), ElementsAre(EndsWith("--map 'y=Pos[m]'")));
 }
 
+TEST(RecordFindings, NameExchangedColumnsAndNothingElse) {
+  Record record = servo();
+  std::swap(record.u_V, record.y_m);
+  EXPECT_THAT(record_findings(record), ElementsAre(HasSubstr("look exchanged")));
+}
+
 TEST(RecordFindings, NameClocksThatAreShifted) {
   Record record = servo();
   record.u_V.erase(record.u_V.end() - 20, record.u_V.end());

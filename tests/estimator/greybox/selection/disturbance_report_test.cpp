@@ -38,6 +38,25 @@ TEST(StructureSearchOfInnovations, HasOneErrorOfTheModelAsGiven) {
   EXPECT_GT(plain, 0U);
 }
 
+TEST(StepError, TakesBackTheRandomPartThatItCauses) {
+  const Disturbance found{"reading", 2e-6, 0.0, 5e-6, 0.8, {{"force", 20.0, 1.0, 4e-6, {}}}, 3e-6};
+  const auto left = [&](double step_error_m, bool lines) {
+    std::optional<Disturbance> disturbance = found;
+    if (!lines) disturbance->lines.clear();
+    drop_step_error(disturbance, step_error_m);
+    return disturbance;
+  };
+  EXPECT_FALSE(left(2.9e-6, false));
+  EXPECT_TRUE(left(1e-6, false));
+  EXPECT_TRUE(left(std::nan(""), false));
+  const std::optional<Disturbance> of_lines = left(2.9e-6, true);
+  ASSERT_TRUE(of_lines);
+  EXPECT_EQ(of_lines->value, 0.0);
+  EXPECT_NEAR(of_lines->rms_m, 4e-6, 1e-12);  // 5^2 - 3^2 = 4^2
+  EXPECT_NEAR(of_lines->share, 0.8 * 16.0 / 25.0, 1e-12);
+  EXPECT_EQ(left(1e-6, true)->value, 2e-6);
+}
+
 // Friction and play let less of a disturbance through than their linearised models: what is stated
 // is no more than the error that there is.
 TEST(Conclusion, StatesNoDisturbanceBeyondTheError) {

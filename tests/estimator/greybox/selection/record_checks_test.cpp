@@ -57,6 +57,21 @@ TEST(RecordChecks, AThousandthOfTheMotionThatNoFitMakesUpForIsNoticed) {
   EXPECT_FALSE(checked(record()).misread());
 }
 
+TEST(RecordChecks, MillimetresTakenForMetresAreNoticedByTheStroke) {
+  Dataset large = record();
+  for (double& y_m : large.y_m) y_m *= 1000.0;
+  EXPECT_TRUE(checked(large).wrong_scale);
+}
+
+TEST(RecordChecks, ExchangedColumnsAreNoticed) {
+  Dataset exchanged = record();
+  std::swap(exchanged.u_V, exchanged.y_m);
+  const RecordChecks checks = checked(exchanged);
+  EXPECT_TRUE(checks.columns_exchanged());
+  EXPECT_TRUE(checks.misread());
+  EXPECT_FALSE(checks.turned_sign());
+}
+
 /// Rod side over cap side of a fitted hydraulic_cylinder, whose cap side is the model file's area.
 double rod_side_ratio(const PlantFit& cylinder) {
   const auto area = std::find_if(cylinder.values.begin(), cylinder.values.end(),
