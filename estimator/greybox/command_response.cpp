@@ -141,14 +141,14 @@ std::vector<double> correlations(const Smoothed& s, Index most) {
 
 /// Calls visit(smoothed, width) for each width that leaves enough of the samples.
 template <class Visit>
-void at_each_width(const CommandSamples& samples, Visit&& visit) {
+void at_each_width(const CommandSamples& samples, const Visit& visit) {
   const auto count = static_cast<std::size_t>(samples.u.size());
   for (std::size_t w = 1; w <= kMostLags && count / w >= kLeastWindows; w *= 2) {
     visit(Smoothed(samples, static_cast<Index>(w)), static_cast<Index>(w));
   }
 }
 
-/// c(0) of the position as the command and the command as the position.
+/// c(0) with the two columns exchanged.
 double exchanged_correlation(const CommandSamples& samples) {
   double greatest = 0.0;
   at_each_width({samples.sample_time_s, samples.y, samples.u}, [&](const Smoothed& s, Index) {
@@ -167,12 +167,12 @@ CommandResponse command_response(double sample_time_s, const std::vector<double>
   const CommandSamples samples = longest_segment(sample_time_s, u_V, y_m, starts);
   const auto count = static_cast<std::size_t>(samples.u.size());
   if (count < kLeastSamples) return response;
+  response.exchanged = exchanged_correlation(samples);
   const auto most = std::min(static_cast<Index>(kLongestShift_s / samples.sample_time_s),
                              static_cast<Index>(count / 10));
   double best = 0.0;
   Index width = 1;
   std::vector<double> c;
-  response.exchanged = exchanged_correlation(samples);
   at_each_width(samples, [&](const Smoothed& smoothed, Index w) {
     const std::vector<double> found = correlations(smoothed, most);
     const double at_once = found[static_cast<std::size_t>(most)];

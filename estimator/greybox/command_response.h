@@ -23,10 +23,11 @@ struct CommandResponse {
 
   /// The motion feeds the command instead of following it.
   [[nodiscard]] bool against_command() const noexcept { return correlation < -0.7; }
-  /// The command follows the position as a position does its command: the two are exchanged. The
-  /// bounds lie far from both kinds: 49 records as logged have at most -0.15, exchanged 1.00.
+  /// The command's derivative follows the position as a position's does its command: the two look
+  /// exchanged. `exchanged` and the correlation have opposite signs, but for what the ends of a
+  /// record add: the command of a closed loop that swings out comes near 1 too.
   [[nodiscard]] bool columns_exchanged() const noexcept {
-    return exchanged > 0.9 && correlation < 0.5 && !against_command();
+    return exchanged > 0.99 && correlation < 0.5 && !against_command();
   }
   /// The command drives the motion: its sign is not turned.
   [[nodiscard]] bool with_command() const noexcept { return correlation > 0.1; }

@@ -14,7 +14,7 @@ namespace selection = estimator::greybox::selection;
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);
 
-/// Several effects, apart by semicolons.
+/// Effects with their values, separated by semicolons.
 [[nodiscard]] std::string effects_words(const selection::Diagnosis& diagnosis,
                                         const std::vector<std::string>& effects);
 

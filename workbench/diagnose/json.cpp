@@ -179,6 +179,8 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"or_class", where.or_sites}});
   }
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
+                    {"wrong_scale", d.checks && d.checks->wrong_scale},
+                    {"columns_exchanged", d.checks && d.checks->columns_exchanged},
                     {"outside_stroke", d.checks && d.checks->outside_stroke()},
                     {"command_lead_samples", d.command_lead_samples}};
   json["plants"] = ordered_json::array();

@@ -14,9 +14,6 @@
 namespace workbench::diagnose {
 namespace {
 
-/// Ratio of the integration step's error to the noise floor from which on it is reported.
-constexpr double kCoarseStep = 0.5;
-
 std::string command_lead_words(double lead_samples) {
   if (lead_samples >= 1.0) {
     return fmt::format(
@@ -66,7 +63,7 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
     if (checks.turned_sign()) break;
-    if (checks.columns_exchanged() && i > 0) break;
+    if (checks.responses[i].columns_exchanged() && !checks.columns_exchanged) continue;
     if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
     for (const std::string& text :
          present::response_findings(checks.responses[i], records[i].position_column)) {
@@ -117,10 +114,6 @@ std::string excitation_words(const selection::Excitation& excitation) {
   return "the records hardly move";
 }
 
-bool has_coarse_step(const selection::Diagnosis& d) {
-  return !d.loses_motion && d.step_error_m > kCoarseStep * d.noise_floor_m;
-}
-
 std::string finer_step_words(const selection::Diagnosis& d) {
   constexpr double kLeast_s = 1e-6;  // a model file's
   return fmt::format("{:.2g}", std::max(kLeast_s, 0.25 * d.better.step_s));
@@ -140,7 +133,7 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
     out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
                      (d.by_innovations ? "estimated with the model" : "the rounding alone"));
   }
-  if (has_coarse_step(d)) {
+  if (d.has_coarse_step()) {
     out.push_back(fmt::format(
         "a quarter of the integration step changes the simulation by {}, {} times the noise "
         "floor: values may be off by more than their errors; run again with --set step_s={}",

@@ -12,8 +12,6 @@ namespace workbench::diagnose {
 /// "the rod moves by 0.01 mm in all, 0.001 mm of it noise"
 [[nodiscard]] std::string excitation_words(const selection::Excitation& excitation);
 
-/// True where the integration's own error is no longer small beside the noise.
-[[nodiscard]] bool has_coarse_step(const selection::Diagnosis& diagnosis);
 /// A quarter of the better model's step, s, as --set takes it.
 [[nodiscard]] std::string finer_step_words(const selection::Diagnosis& diagnosis);
 

@@ -47,7 +47,7 @@ struct PreparedDiagnosis {
   /// Options with which `compare` reads a record as it was read here.
   std::vector<std::string> reading_options;
   bool flip = false;      ///< the commands have the other sign: `compare` has no option for it
-  double within_s = 0.0;  ///< the request's limit of time; 0: none
+  double within_s = 0.0;  ///< time limit; 0: none
   greybox::Split split = greybox::Split::blocks;
 };
 

@@ -6,6 +6,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "plant_sim/formula/formula_effect.h"
 #include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/error_words.h"
@@ -70,8 +71,10 @@ std::string unexplained_words(const selection::Diagnosis& d) {
   }
   if (d.checks && d.checks->misread()) {
     return "Unexplained: " + rest +
-           ". What is missing was not sought: read the record as it says "
-           "below first, or, where the file's gain is off, free it with --prior NAME=none.";
+           ". What is missing was not sought: read the record as it says below first" +
+           (d.checks->wrong_scale
+                ? ", or, where the file's gain is off, free it with --prior NAME=none."
+                : ".");
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {

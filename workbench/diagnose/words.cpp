@@ -225,9 +225,9 @@ std::string next_command(const DiagnosisReport& outcome) {
   const PreparedDiagnosis& input = *outcome.prepared;
   const std::string output = input.output.empty() ? " -o better.toml" : "";
   if (d.checks && d.checks->turned_sign()) return input.command + " --flip" + output;
-  if (d.checks && d.checks->misread()) return "";  // the mapping is a question to the user
+  if (d.checks && d.checks->misread()) return "";  // the user must decide the mapping
   if (input.output.empty()) {
-    return (has_coarse_step(d) ? with_step(input.command, finer_step_words(d)) : input.command) +
+    return (d.has_coarse_step() ? with_step(input.command, finer_step_words(d)) : input.command) +
            output;
   }
   if (input.flip) return "";

@@ -124,8 +124,9 @@ std::vector<std::string> response_findings(const greybox::CommandResponse& respo
   std::vector<std::string> out;
   if (response.columns_exchanged()) {
     return {fmt::format(
-        "command and position look exchanged (the command's speed goes with the position, {:.2f}, "
-        "as a position's does with its command): name the columns the other way round",
+        "command and position look exchanged (the command's derivative correlates with the "
+        "position "
+        "by {:.2f}, as a position's does with its command): name the columns the other way round",
         response.exchanged)};
   }
   if (response.against_command()) {

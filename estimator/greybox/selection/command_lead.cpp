@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/search_round.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
 
@@ -110,6 +112,24 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& fi
   if (lead_samples == std::floor(lead_samples)) return {lead_samples, 0.0};
   return {lead_samples, context.problem.data.all_mask.sum() *
                             std::log(stage.fitted.validation_rms_m / best->validation_rms_m)};
+}
+
+CommandLead find_command_lead(const SearchContext& context, const SearchStart& start) {
+  const SearchBranch& branch = start.branch;
+  CommandLead lead = find_command_lead(context, start.first, branch.stage);
+  if (branch.rounds.empty()) return lead;
+  const std::vector<Candidate>& candidates = branch.rounds.front().candidates;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Candidate& one : candidates) {
+    if (one.fitted_at_all) least_m = std::min(least_m, one.validation_rms_m);
+  }
+  for (const Candidate& one : candidates) {
+    if (lead.samples > 0.0 || context.cancelled()) break;
+    if (!one.fitted_at_all || !(one.validation_rms_m <= (1.0 + kRivals) * least_m)) continue;
+    const ModelStage rival = with(start.first, one);
+    if (rival.added != branch.stage.added) lead = find_command_lead(context, start.first, rival);
+  }
+  return lead;
 }
 
 bool floor_shows_lead(const FitDataset& data) {

@@ -15,6 +15,8 @@
 
 namespace estimator::greybox::selection {
 
+struct SearchStart;
+
 /// Each record's command, shifted earlier by a number of samples; its mean over an interval where
 /// the number is not whole; held at a segment's ends.
 void advance_command(FitDataset& data, double lead_samples);
@@ -29,6 +31,10 @@ struct CommandLead {
 /// an effect has to make up for is no fault of the log.
 [[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& first,
                                             const ModelStage& stage);
+
+/// The same beside the effects that a search has begun with, or beside one of its first round that
+/// leaves as little: without the lead, others stand in for the effect that shows it.
+[[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const SearchStart& start);
 
 /// True where the noise floor is low enough to show an interpolated command: that of a slow log,
 /// taken from positions far apart, is too high.

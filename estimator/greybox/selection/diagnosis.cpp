@@ -239,7 +239,7 @@ SearchStart begin_search(const SearchContext& context) {
 /// samples, 0 for none.
 double take_command_lead(SearchContext& context, SearchContext& search, SearchStart& start) {
   if (is_explained(search, start.branch.stage) && floor_shows_lead(search.problem.data)) return 0.0;
-  const CommandLead lead = find_command_lead(search, start.first, start.branch.stage);
+  const CommandLead lead = find_command_lead(search, start);
   if (!(lead.samples > 0.0) || context.cancelled()) return 0.0;
   advance_command(context.problem.data, lead.samples);
   context.problem.interpolated_nats = lead.gain_nats;
@@ -300,11 +300,15 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
-/// Looks at the record itself where the fitted model is far from the noise.
-void check_record(const SearchContext& search, const ModelStage& first, Diagnosis& result) {
-  const double rms_m = first.fitted.validation_rms_m;
-  result.checks.reset();
-  if (rms_m > kFarFromFloor * result.noise_floor_m) result.checks = check_records(search, rms_m);
+/// The record itself, looked at where the fitted model is far from the noise.
+std::optional<RecordChecks> checks_of(const SearchContext& search, const SearchStart& start,
+                                      double noise_floor_m) {
+  const double rms_m = start.first.fitted.validation_rms_m;
+  if (!(rms_m > kFarFromFloor * noise_floor_m)) return {};
+  RecordChecks checks = check_records(search, rms_m);
+  // an effect that explains the record has read it rightly
+  if (checks.misread() && is_explained(search, start.branch.stage)) return {};
+  return checks;
 }
 
 /// A command acts at the sample at which it is logged, or may act before.
@@ -321,10 +325,10 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   }
   if (times == CommandTimes::may_lead)
     result.command_lead_samples = take_command_lead(context, search, start);
-  const bool widened = widen_file_values(search, start, context.problem);
-  if (widened) search = for_search(context);
+  if (widen_file_values(search, start, context.problem)) search = for_search(context);
   const ModelStage first = start.first;
-  if (widened || result.command_lead_samples > 0.0) check_record(search, first, result);
+  if (!(first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m))
+    result.checks.reset();
   ModelStage likeliest;
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
@@ -370,10 +374,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   SearchStart start = start_search(search);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
-  check_record(search, start.first, result);
+  result.checks = checks_of(search, start, result.noise_floor_m);
   if (result.checks && result.checks->misread()) {
     conclude(context, search, result);
-  } else if (!explain_beyond_effects(search, start.first, start.branch.stage, result)) {
+  } else if (!explain_beyond_effects(search, start, result)) {
     const Diagnosis before = result;
     const SearchContext as_logged = context;
     seek_effects(context, std::move(search), std::move(start), CommandTimes::may_lead, result);

@@ -13,8 +13,8 @@ using Eigen::Index;
 
 /// A disturbance of less than this share of the sensor's noise, RMS, is none.
 constexpr double kSeen = 0.3;
-/// Random part over the error of the integration step up to which the step causes it. A quarter of
-/// the step shows three quarters of its error and more.
+/// Random part over the error of the integration step up to which the step causes it: 1.1 was seen
+/// beside dry friction. A quarter of the step shows three quarters of its error at least.
 constexpr double kOfStep = 1.5;
 /// Share of the random part's square above which it is the walk of the reading.
 constexpr double kMostly = 0.5;
@@ -161,6 +161,7 @@ void drop_step_error(std::optional<Disturbance>& disturbance, double step_error_
     disturbance.reset();
     return;
   }
+  if (disturbance->as == "reading") disturbance->as = "force";  // as where lines alone are seen
   const double lines_m2 = std::pow(disturbance->rms_m, 2) - std::pow(disturbance->random_m, 2);
   disturbance->share *= std::max(0.0, lines_m2) / std::pow(disturbance->rms_m, 2);
   disturbance->rms_m = std::sqrt(std::max(0.0, lines_m2));
@@ -169,6 +170,7 @@ void drop_step_error(std::optional<Disturbance>& disturbance, double step_error_
 
 void limit(Disturbance& disturbance, double rms_m) {
   disturbance.rms_m = std::min(disturbance.rms_m, rms_m);
+  disturbance.random_m = std::min(disturbance.random_m, disturbance.rms_m);
   for (DisturbanceLine& line : disturbance.lines) line.rms_m = std::min(line.rms_m, rms_m);
 }
 

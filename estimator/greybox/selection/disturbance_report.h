@@ -33,7 +33,7 @@ struct Disturbance {
   double rms_m = 0.0;      ///< part of the simulation's error, random part and lines together
   double share = 0.0;      ///< share of the final model's mean squared error
   std::vector<DisturbanceLine> lines;
-  double random_m = 0.0;  ///< the random part's part of the simulation's error
+  double random_m = 0.0;  ///< share of rms_m due to the random part
 };
 
 /// Nothing where what is found stays below the sensor's noise.
@@ -45,8 +45,8 @@ struct Disturbance {
 void add_line_rivals(const SearchContext& plain, const InnovationStage& final,
                      Disturbance& disturbance);
 
-/// Takes back a random part no greater than about `step_error_m`, the error of the integration
-/// step, which looks like one; what remains may be nothing.
+/// Removes the random part where `step_error_m`, the error of the integration step, accounts for
+/// it; resets `disturbance` where no line remains.
 void drop_step_error(std::optional<Disturbance>& disturbance, double step_error_m);
 
 /// Limits the disturbance and its lines to `rms_m`, the error that there is: friction and play let

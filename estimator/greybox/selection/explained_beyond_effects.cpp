@@ -31,8 +31,10 @@ double held_gain_nats(const SearchContext& context, const InnovationStage& stage
 
 }  // namespace
 
-bool explain_beyond_effects(const SearchContext& context, const ModelStage& first,
-                            const ModelStage& held, Diagnosis& result) {
+bool explain_beyond_effects(const SearchContext& context, const SearchStart& start,
+                            Diagnosis& result) {
+  const ModelStage& first = start.first;
+  const ModelStage& held = start.branch.stage;
   // parameters may differ between records before anything changes within one
   if (context.problem.effects_only || context.problem.data.records.size() != 1 ||
       is_explained(context, held) || context.cancelled()) {
@@ -47,8 +49,8 @@ bool explain_beyond_effects(const SearchContext& context, const ModelStage& firs
   const bool law_first = by_laws_nats > std::max(by_effects_nats, by_changes_nats);
   const bool change_first = by_changes_nats > by_effects_nats && !motion_explains_more(stage);
   if (!law_first && !change_first) return false;
-  // a command that changes between the samples of a thinned log passes for much that goes with it
-  if (find_command_lead(context, first, held).samples > 0.0) return false;
+  // a command that changes between the samples of a thinned log can look like a law or a change
+  if (find_command_lead(context, start).samples > 0.0) return false;
   const double held_nats = held_gain_nats(context, stage, held);
   const double beyond_nats = std::max(by_laws_nats, by_changes_nats);
   if (held_nats > kFarMore * beyond_nats ||

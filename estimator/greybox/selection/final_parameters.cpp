@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "estimator/greybox/pressure_scale.h"
 #include "estimator/greybox/selection/innovation_jacobian.h"
@@ -14,16 +13,6 @@
 
 namespace estimator::greybox::selection {
 namespace {
-
-/// Brings each phase within half a turn of zero: a fit may end a turn away.
-void wrap_phases(FitSummary& fitted) {
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const FreeParameter& p = fitted.parameters[i];
-    if (!p.name.ends_with(".phase_rad")) continue;
-    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
-    theta = p.to_theta(std::remainder(p.to_physical(theta), 2.0 * std::numbers::pi));
-  }
-}
 
 /// `errors` are those of the search values by the fit's own residual. The scatter between halves of
 /// the record and the error of the integration step are added.

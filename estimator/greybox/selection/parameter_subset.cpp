@@ -1,8 +1,11 @@
 #include "estimator/greybox/selection/parameter_subset.h"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "estimator/greybox/selection/revived_refinements.h"
+#include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -38,6 +41,21 @@ bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t l
     if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
   }
   return false;
+}
+
+void wrap_phases(FitSummary& fitted) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    const bool has_prior = p.prior_sd > 0.0 && std::isfinite(p.prior_sd);
+    if (!p.name.ends_with(".phase_rad") || has_prior) continue;
+    if (plant_sim::find_effect(effect_of(p)) == nullptr) continue;
+    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    const double phase_rad = p.to_physical(theta);
+    const double wrapped = p.to_theta(std::remainder(phase_rad, 2.0 * std::numbers::pi));
+    if (wrapped == theta || !(wrapped > p.lower && wrapped < p.upper)) continue;
+    theta = wrapped;
+    fitted.at_bound[i] = 0;
+  }
 }
 
 void append(ParameterSubset& to, const ParameterSubset& more) {

@@ -45,6 +45,10 @@ template <class Keep>
 /// The same of the parameters from `first` to before `last`.
 [[nodiscard]] bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t last);
 
+/// Brings the phases of the library's periodic effects within half a turn of zero, where their
+/// range allows it: a fit may end a turn away. Phases with a prior stay.
+void wrap_phases(FitSummary& fitted);
+
 void append(ParameterSubset& to, const ParameterSubset& more);
 
 /// Fit to convergence on the samples with `weights` 1. `width` is the default within in_parallel.

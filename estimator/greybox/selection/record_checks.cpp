@@ -168,7 +168,9 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   checks.beyond_m = excess.beyond_m;
   plant_sim::ModelFile model = context.problem.model;
   if (const double* stroke_m = model.value("stroke_m")) checks.stroke_m = *stroke_m;
-  checks.low_m = checks.high_m = data.records.front().y_m.front();
+  const ValueRange first = usual_range(data.records.front().y_m);
+  checks.low_m = first.low;
+  checks.high_m = first.high;
   for (const Dataset& record : data.records) {
     const ValueRange usual = usual_range(record.y_m);  // a dropout is no motion
     checks.low_m = std::min(checks.low_m, usual.low);
@@ -181,11 +183,14 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   const bool outsized =
       checks.stroke_m > 0.0 &&
       scale_error(checks.low_m, checks.high_m, checks.stroke_m) == ScaleError::thousandfold;
-  checks.wrong_scale = outsized || (scale_error(given.ratio) != ScaleError::none &&
-                                    rms_m > kNotMadeUp * given.rms_m);
+  const bool made_up = rms_m <= kNotMadeUp * given.rms_m;
+  checks.wrong_scale = !made_up && (outsized || scale_error(given.ratio) != ScaleError::none);
+  checks.columns_exchanged =
+      !made_up && std::any_of(checks.responses.begin(), checks.responses.end(),
+                              [](const CommandResponse& r) { return r.columns_exchanged(); });
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
                                   [](const CommandResponse& r) { return r.with_command(); });
-  if (driven || checks.columns_exchanged()) return checks;
+  if (driven || checks.columns_exchanged) return checks;
   FitDataset turned = data;
   for (Dataset& record : turned.records) {
     for (double& u_V : record.u_V) u_V = -u_V;

@@ -32,17 +32,16 @@ struct RecordChecks {
   double high_m = 0.0;
   std::vector<CommandResponse> responses;  ///< one per record
   MotionRatio motion;                      ///< first record, by the model as given
-  /// The motion is about 1000 times the model's, or a thousandth, and no fit makes up for it, or
-  /// the positions are about 1000 times the stroke.
+  /// The motion is about 1000 times the model's, or a thousandth, or the positions span far more
+  /// than the stroke, as millimetres taken for metres do, and no fit makes up for it.
   bool wrong_scale = false;
+  /// Command and position of a record are exchanged, by their response, and the model does not
+  /// follow them as they are.
+  bool columns_exchanged = false;
 
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
-  /// Command and position of the first record are exchanged.
-  [[nodiscard]] bool columns_exchanged() const {
-    return !responses.empty() && responses.front().columns_exchanged();
-  }
   /// True for a record that has to be read differently before any effect is sought.
-  [[nodiscard]] bool misread() const { return turned_sign() || wrong_scale || columns_exchanged(); }
+  [[nodiscard]] bool misread() const { return turned_sign() || wrong_scale || columns_exchanged; }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }
 };
 

@@ -88,6 +88,28 @@ TEST(CommandResponse, SeesATurnedSign) {
   EXPECT_FALSE(turned(plant(5.0, 20.0, 400.0, 10.0)).response().with_command());
 }
 
+/// y'' = u, u = w^2 (r - y) - 2 z w y': a step response of a closed loop with damping ratio z.
+Motion closed_loop(double damping_ratio) {
+  Motion motion;
+  constexpr double kW = 2.0;
+  double y = 0.0;
+  double v = 0.0;
+  for (std::size_t k = 0; k < 2000; ++k) {
+    const double u = kW * kW * (1.0 - y) - 2.0 * damping_ratio * kW * v;
+    motion.u.push_back(u);
+    motion.y.push_back(y);
+    y += kTs * v + 0.5 * kTs * kTs * u;
+    v += kTs * u;
+  }
+  return motion;
+}
+
+TEST(CommandResponse, AClosedLoopThatSwingsOutIsNotExchanged) {
+  for (double ratio = 0.1; ratio < 0.95; ratio += 0.01) {
+    EXPECT_FALSE(closed_loop(ratio).response().columns_exchanged()) << ratio;
+  }
+}
+
 TEST(CommandResponse, SeesExchangedColumns) {
   for (const Motion& motion :
        {servo(), plant(0.2, 10.0, 0.0, 0.5), plant(0.0, 10.0, 0.0, 0.5, true)}) {

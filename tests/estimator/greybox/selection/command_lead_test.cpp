@@ -116,5 +116,17 @@ TEST(CommandLead, IsNoneWhereItLeavesMoreWithoutTheEffect) {
   EXPECT_EQ(find_command_lead(context, start.first, start.branch.stage).samples, 0.0);
 }
 
+// Without the lead a second mass of many parameters leaves as little as the friction that is
+// missing, and no lead lowers that.
+TEST(CommandLead, IsSoughtBesideTheRivalsOfTheFirstEffectToo) {
+  const SearchContext context =
+      context_with(thinned(dataset_of(truth::simulate(truth::parse_case(
+                               "motion=multisine,mismatched=1,friction.coulomb_N=150", 8011))),
+                           2));
+  const SearchStart start = start_search(context);
+  EXPECT_EQ(find_command_lead(context, start.first, start.branch.stage).samples, 0.0);
+  EXPECT_EQ(find_command_lead(context, start).samples, 0.25);
+}
+
 }  // namespace
 }  // namespace estimator::greybox::selection

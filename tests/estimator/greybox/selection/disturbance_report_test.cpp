@@ -52,6 +52,7 @@ TEST(StepError, TakesBackTheRandomPartThatItCauses) {
   const std::optional<Disturbance> of_lines = left(2.9e-6, true);
   ASSERT_TRUE(of_lines);
   EXPECT_EQ(of_lines->value, 0.0);
+  EXPECT_EQ(of_lines->as, "force");
   EXPECT_NEAR(of_lines->rms_m, 4e-6, 1e-12);  // 5^2 - 3^2 = 4^2
   EXPECT_NEAR(of_lines->share, 0.8 * 16.0 / 25.0, 1e-12);
   EXPECT_EQ(left(1e-6, true)->value, 2e-6);

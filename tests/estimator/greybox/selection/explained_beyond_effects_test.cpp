@@ -23,7 +23,10 @@ std::optional<Diagnosis> explained(const std::string& spec, bool effects_only = 
   d.noise_floor_m = context.problem.data.noise_floor_m;
   d.search.path = {first};
   d.search.final = first;
-  if (!explain_beyond_effects(context, first, first, d)) return {};
+  SearchStart start;
+  start.first = first;
+  start.branch.stage = first;
+  if (!explain_beyond_effects(context, start, d)) return {};
   EXPECT_LT(d.rms_after_m, 1.1 * d.floor_m());
   return d;
 }

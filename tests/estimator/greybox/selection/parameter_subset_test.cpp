@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <numbers>
+
 #include "estimator/greybox/selection/alternative_refinements.h"
 
 namespace estimator::greybox::selection {
@@ -50,6 +53,29 @@ TEST(WithoutLeast, DropsAnAlternativeAtItsLeastAlone) {
   EXPECT_EQ(rest.parameters[1].name, "friction.stribeck_mps");
   EXPECT_EQ(rest.start, Eigen::Vector2d(0.0, 0.0));
   EXPECT_EQ(without_least(gradual_friction(0.05), {}).parameters.size(), 3u);  // the file's own
+}
+
+TEST(WrapPhases, ALibraryPhaseEndsWithinHalfATurnWhereItMay) {
+  const auto wrapped = [](const char* name, double phase_rad, double lower, double prior_sd) {
+    FitSummary fitted;
+    fitted.parameters.resize(1);
+    fitted.parameters[0].name = name;
+    fitted.parameters[0].unit = 1.0;
+    fitted.parameters[0].lower = lower;
+    fitted.parameters[0].upper = 6.3;
+    fitted.parameters[0].prior_sd = prior_sd;
+    fitted.theta = Eigen::VectorXd::Constant(1, phase_rad);
+    fitted.at_bound = {0};
+    wrap_phases(fitted);
+    return fitted.theta[0];
+  };
+  constexpr double kNoPrior = std::numeric_limits<double>::infinity();
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  EXPECT_NEAR(wrapped("force_ripple.phase_rad", 5.0, -6.3, kNoPrior), 5.0 - kTurn, 1e-12);
+  EXPECT_NEAR(wrapped("encoder_eccentricity.phase_rad", -4.0, -6.3, kNoPrior), kTurn - 4.0, 1e-12);
+  EXPECT_EQ(wrapped("force_ripple.phase_rad", 5.0, 3.0, kNoPrior), 5.0);  // out of its range
+  EXPECT_EQ(wrapped("force_ripple.phase_rad", 5.0, -6.3, 0.1), 5.0);      // has a prior
+  EXPECT_EQ(wrapped("my_formula.phase_rad", 5.0, -6.3, kNoPrior), 5.0);   // may have another period
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "estimator/greybox/observer_simulation.h"
+#include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/greybox/selection/two_areas.h"
 #include "plant_sim/plant.h"
@@ -63,11 +64,28 @@ TEST(RecordChecks, MillimetresTakenForMetresAreNoticedByTheStroke) {
   EXPECT_TRUE(checked(large).wrong_scale);
 }
 
+TEST(RecordChecks, AFirstSampleFarOffIsNoUnit) {
+  Dataset far = record();
+  far.y_m.front() = 65.535;
+  EXPECT_FALSE(check_records(context_with(std::move(far)), 1.0).wrong_scale);
+}
+
+TEST(RecordChecks, AMisreadRecordIsNotSearched) {
+  Dataset exchanged = record();
+  std::swap(exchanged.u_V, exchanged.y_m);
+  const SearchContext context = context_with(std::move(exchanged));
+  const Diagnosis found = diagnose(context.problem, context.options);
+  EXPECT_EQ(found.verdict, Verdict::unexplained);
+  EXPECT_TRUE(found.checks && found.checks->misread());
+  EXPECT_TRUE(found.search.rounds.empty());
+  EXPECT_TRUE(found.where.empty());
+}
+
 TEST(RecordChecks, ExchangedColumnsAreNoticed) {
   Dataset exchanged = record();
   std::swap(exchanged.u_V, exchanged.y_m);
   const RecordChecks checks = checked(exchanged);
-  EXPECT_TRUE(checks.columns_exchanged());
+  EXPECT_TRUE(checks.columns_exchanged);
   EXPECT_TRUE(checks.misread());
   EXPECT_FALSE(checks.turned_sign());
 }
