@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "estimator/greybox/selection/change_search.h"
+#include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/law_search.h"
@@ -19,6 +20,9 @@ constexpr double kClearOfError = 3.0;
 
 /// Effects beside which much physics is missing, from which on laws of any kind are tried early.
 constexpr std::size_t kBeforeLaws = 2;
+/// Share of the error of named effects that a curve in their place may leave in a slow log: its
+/// many knots follow what the command does between the samples, too.
+constexpr double kCurveForNames = 0.8;
 /// Most laws and effects together that an early search tries.
 constexpr std::size_t kMostEarly = 3;
 
@@ -84,19 +88,14 @@ std::string shared_site(const std::vector<std::string>& effects) {
   return site;
 }
 
-/// Takes the laws of a search where they leave clearly less than `result`, which leaves physics
-/// unexplained; formulas hardly more, where a disturbance is all that they leave: no model
-/// leaves less than that.
+/// Takes the laws of a search where they leave less than `result`, by most_error_ratio().
 bool take_better(const SearchContext& context, const ModelStage& first,
                  const std::optional<LawSearch>& found, Diagnosis& result) {
   Diagnosis learned;
+  const bool slow_log = !floor_shows_lead(context.problem.data);
   if (!found || !take_laws(context, first, *found, result, learned)) return false;
-  const bool formulas = std::none_of(learned.laws.begin(), learned.laws.end(),
-                                     [](const Law& law) { return law.effect.curve.has_value(); });
-  const bool at_floor =
-      learned.disturbance && learned.disturbed_floor_m() > (1.0 - kRivals) * learned.rms_after_m;
-  const double most = formulas && at_floor ? 1.0 + kRivals : 1.0 - kRivals;
-  if (!(learned.rms_after_m < most * result.rms_after_m)) return false;
+  if (!(learned.rms_after_m < most_error_ratio(learned, result, slow_log) * result.rms_after_m))
+    return false;
   result = std::move(learned);
   return true;
 }
@@ -119,6 +118,21 @@ bool seek_laws(const SearchContext& context, const ModelStage& first,
 }
 
 }  // namespace
+
+double most_error_ratio(const Diagnosis& learned, const Diagnosis& before, bool slow_log) {
+  const bool formulas = std::none_of(learned.laws.begin(), learned.laws.end(),
+                                     [](const Law& law) { return law.effect.curve.has_value(); });
+  const bool at_floor =
+      learned.disturbance && learned.disturbed_floor_m() > (1.0 - kRivals) * learned.rms_after_m;
+  if (formulas) return at_floor ? 1.0 + kRivals : 1.0 - kRivals;
+  const bool replaces =
+      std::any_of(before.missing.begin(), before.missing.end(), [&](const std::string& effect) {
+        return std::find(learned.missing.begin(), learned.missing.end(), effect) ==
+               learned.missing.end();
+      });
+  const bool explains = learned.rms_after_m <= kUnexplained * learned.noise_floor_m;
+  return slow_log && replaces && !explains ? kCurveForNames : 1.0 - kRivals;
+}
 
 bool learn_laws(const SearchContext& context, const ModelStage& first, const ModelStage& likeliest,
                 Diagnosis& result) {

@@ -6,6 +6,13 @@
 
 namespace estimator::greybox::selection {
 
+/// Largest share of the error of `before`, which leaves physics unexplained, that laws may leave to
+/// be taken in its place: clearly less; formulas hardly more where a disturbance is all that they
+/// leave; of a slow log, a curve in the place of named effects much less, unless noise explains the
+/// rest: a disturbance cannot be told there from what the command does between the samples.
+[[nodiscard]] double most_error_ratio(const Diagnosis& learned, const Diagnosis& before,
+                                      bool slow_log);
+
 /// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
 /// They stand alone or beside the effects of `result`, or of the model that the innovations chose,
 /// `likeliest`. False: `result` is as before.

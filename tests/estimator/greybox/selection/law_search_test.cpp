@@ -297,5 +297,28 @@ TEST(Laws, AHealthyRecordTeachesNone) {
   EXPECT_THAT(d.laws, IsEmpty());
 }
 
+// A dead band in a log of means smooths to a curve, which follows the smoothing too.
+TEST(LearnedLaws, ACurveInPlaceOfANameHasToLeaveMuchLessOfASlowLog) {
+  Diagnosis named;
+  named.noise_floor_m = 10e-6;
+  named.rms_after_m = 20e-6;
+  named.missing = {"deadband"};
+  Diagnosis learned = named;
+  learned.missing.clear();
+  learned.laws.resize(1);
+  learned.laws.front().effect.curve.emplace();
+  learned.rms_after_m = 18e-6;
+  EXPECT_GT(learned.rms_after_m, most_error_ratio(learned, named, true) * named.rms_after_m);
+  EXPECT_LT(learned.rms_after_m, most_error_ratio(learned, named, false) * named.rms_after_m);
+  learned.missing = named.missing;  // beside the name
+  EXPECT_LT(learned.rms_after_m, most_error_ratio(learned, named, true) * named.rms_after_m);
+  learned.missing.clear();
+  learned.rms_after_m = named.noise_floor_m;  // explains the record
+  EXPECT_EQ(most_error_ratio(learned, named, true), 1.0 - kRivals);
+  learned.rms_after_m = 18e-6;
+  learned.laws.front().effect.curve.reset();  // a formula
+  EXPECT_LT(learned.rms_after_m, most_error_ratio(learned, named, true) * named.rms_after_m);
+}
+
 }  // namespace
 }  // namespace estimator::greybox::selection
