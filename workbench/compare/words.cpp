@@ -289,7 +289,8 @@ std::vector<std::string> notes(const validation::Comparison& c) {
   if (!explained && in_stroke.empty()) {
     add(present::motion_finding(c.motion, c.record.command_column, c.record.position_column));
   }
-  for (std::string& text : present::response_findings(c.response, c.record.position_column)) {
+  for (std::string& text :
+       present::response_findings(c.response, c.record.command_column, c.record.position_column)) {
     out.push_back(std::move(text));
   }
   if (c.beyond_stroke && in_stroke.empty()) {

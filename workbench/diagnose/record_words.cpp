@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/representative_segments.h"
 #include "workbench/present/dataset_notes.h"
@@ -65,8 +66,8 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
     if (checks.turned_sign()) break;
     if (checks.responses[i].columns_exchanged() && !checks.columns_exchanged) continue;
     if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
-    for (const std::string& text :
-         present::response_findings(checks.responses[i], records[i].position_column)) {
+    for (const std::string& text : present::response_findings(
+             checks.responses[i], records[i].command_column, records[i].position_column)) {
       out.push_back(records[i].name + ": " + text + ".");
       said.insert(records[i].name);
     }
@@ -74,13 +75,16 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   const std::string size = records.empty() ? std::string() : size_words(checks, records.front());
   if (!size.empty()) out.push_back(records.front().name + ": " + size + ".");
   if (checks.outside_stroke() && size.empty()) {
-    out.push_back("The position leaves the model's stroke" +
-                  (checks.below_m < 0.0 ? ", down to " + config::units::length_words(checks.below_m)
-                                        : std::string()) +
-                  (checks.beyond_m > 0.0
-                       ? ", " + config::units::length_words(checks.beyond_m) + " beyond its end"
-                       : std::string()) +
-                  ": look at its unit and its zero.");
+    std::vector<std::string> ends;
+    if (checks.below_m < 0.0) {
+      ends.push_back("by " + config::units::length_words(-checks.below_m) +
+                     " before its beginning");
+    }
+    if (checks.beyond_m > 0.0) {
+      ends.push_back("by " + config::units::length_words(checks.beyond_m) + " beyond its end");
+    }
+    out.push_back("The position leaves the model's stroke " +
+                  config::schema::joined(ends, " and ") + ": look at its unit and its zero.");
   }
   if (d.fits_another_plant()) {
     const selection::PlantFit& other = d.plants.front();

@@ -55,13 +55,18 @@ std::string name_of(const SourceColumn& column) {
   return name.empty() ? header : name;
 }
 
-/// "--map y=-Position", with the unit where the header does not name it.
-std::string turning_map(const SourceColumn& column) {
+/// "--map u=-Command", with the unit where the header does not name it.
+std::string turning_map(const char* key, const SourceColumn& column) {
   std::string value = (column.turned ? "" : "-") + name_of(column);
   if (config::record::parse_header(column.header).unit.text != column.unit) {
     value += "[" + column.unit + "]";
   }
-  return map_words("y", value);
+  return map_words(key, value);
+}
+
+/// "--map u=Position,y=Command".
+std::string exchanging_map(const SourceColumn& command, const SourceColumn& position) {
+  return map_words("u", name_of(position) + ",y=" + name_of(command));
 }
 
 /// "is it mm? --map 'y=Position[mm]'"
@@ -120,21 +125,31 @@ std::vector<std::string> size_findings(const config::record::Record& record) {
 }  // namespace
 
 std::vector<std::string> response_findings(const greybox::CommandResponse& response,
+                                           const SourceColumn& command,
                                            const SourceColumn& position) {
   std::vector<std::string> out;
   if (response.columns_exchanged()) {
-    return {fmt::format(
+    std::string text = fmt::format(
         "command and position look exchanged (the command's derivative correlates with the "
         "position "
         "by {:.2f}, as a position's does with its command): name the columns the other way round",
-        response.exchanged)};
+        response.exchanged);
+    if (!command.header.empty() && !position.header.empty())
+      text += ", " + exchanging_map(command, position);
+    return {std::move(text)};
   }
   if (response.against_command()) {
     std::string text = fmt::format(
         "the position moves against the command (speed and command correlate by {:.2f}): is a sign "
         "turned? A positive command {}",
         response.correlation, config::units::axis_words("extends"));
-    if (!position.header.empty()) text += "; " + turning_map(position);
+    // turned, a position leaves the stroke, unless a mapping has turned it before
+    const bool back = position.turned && !position.header.empty();
+    if (back) {
+      text += "; " + turning_map("y", position);
+    } else if (!command.header.empty()) {
+      text += "; " + turning_map("u", command);
+    }
     out.push_back(std::move(text));
   }
   const std::string time = config::units::words(
@@ -198,7 +213,8 @@ std::vector<std::string> record_findings(const config::record::Record& record) {
   const greybox::CommandResponse response =
       greybox::command_response(record.sample_time_s, record.u_V, record.y_m, record.gaps);
   for (std::string& text :
-       response_findings(response, source_of(record, "y_" + record.position_unit))) {
+       response_findings(response, source_of(record, "u_" + record.command_unit),
+                         source_of(record, "y_" + record.position_unit))) {
     out.push_back(std::move(text));
   }
   return out;

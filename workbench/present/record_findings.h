@@ -16,6 +16,7 @@ namespace greybox = estimator::greybox;
 
 /// Sign and clocks, by the record alone.
 [[nodiscard]] std::vector<std::string> response_findings(const greybox::CommandResponse& response,
+                                                         const greybox::SourceColumn& command,
                                                          const greybox::SourceColumn& position);
 
 /// A position of the wrong size for the model's stroke; empty where it may be right.

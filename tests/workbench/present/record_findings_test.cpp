@@ -91,7 +91,7 @@ TEST(RecordFindings, NameASignThatIsTurnedWithTheMapThatTurnsIt) {
   EXPECT_THAT(record_findings(record),
               ElementsAre(HasSubstr("moves against the command (speed and command correlate by "
                                     "-1.00): is a sign turned? A positive command extends; --map "
-                                    "y=-Position")));
+                                    "'u=-Command[V]'")));
   record.origins.back().factor = -1.0;  // a mapping has turned it
   EXPECT_THAT(record_findings(record), ElementsAre(EndsWith("--map y=Position")));
   record.origins.back().header = "Pos";
@@ -101,7 +101,8 @@ TEST(RecordFindings, NameASignThatIsTurnedWithTheMapThatTurnsIt) {
 TEST(RecordFindings, NameExchangedColumnsAndNothingElse) {
   Record record = servo();
   std::swap(record.u_V, record.y_m);
-  EXPECT_THAT(record_findings(record), ElementsAre(HasSubstr("look exchanged")));
+  EXPECT_THAT(record_findings(record),
+              ElementsAre(EndsWith("the other way round, --map u=Position,y=Command")));
 }
 
 TEST(RecordFindings, NameClocksThatAreShifted) {
