@@ -140,6 +140,19 @@ TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
 }
 
+TEST(DiagnosisText, CandidatesOfALaterRoundAreHeldAgainstWhatWasTaken) {
+  ExampleReport outcome;
+  selection::Round& round = outcome.diagnosis.search.rounds.front();
+  const auto text = [&] {
+    std::ostringstream out;
+    print(outcome, out);
+    return out.str();
+  };
+  EXPECT_THAT(text(), HasSubstr("candidates of round 1: 26.3 um without any\n"));
+  round.before.added = {"null_bias"};
+  EXPECT_THAT(text(), HasSubstr("26.3 um with null_bias alone\n"));
+}
+
 TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   ExampleReport outcome;
   outcome.input.records = {"bench\r\nmass_kg = 1.csv"};  // no comment ends early

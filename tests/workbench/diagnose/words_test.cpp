@@ -348,6 +348,34 @@ TEST(Words, AResponseThatTheModelExplainsIsNoFaultOfTheRecord) {
   EXPECT_THAT(remarks(outcome), Contains(HasSubstr("80 ms late")));
 }
 
+TEST(Words, AStrokeThatIsLeftAtBothEndsHasBothOverruns) {
+  ExampleReport outcome;
+  outcome.input.problem.data.records.resize(1);
+  selection::RecordChecks checks;
+  checks.stroke_m = 0.5;
+  checks.low_m = checks.below_m = -0.25;
+  checks.high_m = 0.625;
+  checks.beyond_m = 0.125;
+  outcome.diagnosis.checks = checks;
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("leaves the model's stroke by 250 mm before its beginning and by "
+                                 "125 mm beyond its end:")));
+}
+
+TEST(Words, AMisreadRecordHasNoNextCommandAndIsNotSearched) {
+  ExampleReport outcome;
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  outcome.diagnosis.missing.clear();
+  selection::RecordChecks checks;
+  checks.columns_exchanged = true;
+  outcome.diagnosis.checks = checks;
+  EXPECT_EQ(next_command(outcome), "");
+  EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("What is missing was not sought"));
+  EXPECT_THAT(verdict_words(outcome.diagnosis), testing::Not(HasSubstr("--prior")));
+  outcome.diagnosis.checks->wrong_scale = true;
+  EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("free it with --prior"));
+}
+
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
