@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "config/record/command_advance.h"
 #include "config/record/mat_variables.h"
 #include "config/record/readers.h"
 #include "config/record/text_window.h"
@@ -77,9 +78,8 @@ const char* other_format(std::string_view head) noexcept {
   return nullptr;
 }
 
-}  // namespace
-
-Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
+/// The record as the file has it.
+Record read_file(const std::filesystem::path& file, const ReadOptions& options) {
   const bool streamed = has_size(file);
   std::string content = streamed ? "" : whole(file, schema::kMostRecordBytes);
   (void)parse_resample(options.resample);
@@ -123,6 +123,14 @@ Record read_record(const std::filesystem::path& file, const ReadOptions& options
     throw schema::bad_data(file.string(), "is no record", kForms);
   }
   return read_csv(window, file.string(), options);
+}
+
+}  // namespace
+
+Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
+  Record record = read_file(file, options);
+  take_command(record, options);
+  return record;
 }
 
 void set_hdf5_reader(Hdf5Reader reader) noexcept { hdf5_reader = reader; }

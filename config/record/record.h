@@ -49,9 +49,10 @@ struct Record {
   /// "rad", ... Every V or m of a result then stands for one of these.
   std::string command_unit = "V";
   std::string position_unit = "m";
-  bool has_position = true;            ///< false: y_m is 0, the file has a command alone
-  std::vector<ChannelOrigin> origins;  ///< one per channel that was read, in the file's order
-  std::string form;                    ///< the file's form in words; empty: as write_csv writes
+  bool command_is_interpolated = false;  ///< shifted by a part of a sample (command_advance.h)
+  bool has_position = true;              ///< false: y_m is 0, the file has a command alone
+  std::vector<ChannelOrigin> origins;    ///< one per channel that was read, in the file's order
+  std::string form;                      ///< the file's form in words; empty: as write_csv writes
 
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
   /// The further column of that name, null when there is none.

@@ -122,6 +122,7 @@ Dataset dataset_of(const config::record::Record& record) {
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
+  result.command_is_interpolated = record.command_is_interpolated;
   for (const config::record::ChannelOrigin& origin : record.origins) {
     if (origin.name == "u_" + record.command_unit) {
       result.command_column = {origin.header, origin.unit, origin.factor < 0.0};
@@ -186,6 +187,7 @@ Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
   result.command_column = whole.command_column;
   result.position_column = whole.position_column;
   result.sample_time_s = whole.sample_time_s;
+  result.command_is_interpolated = whole.command_is_interpolated;
   const auto cut = [&](const auto& values) {
     return std::decay_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(from),
                                           values.begin() + static_cast<std::ptrdiff_t>(to));

@@ -57,6 +57,8 @@ struct Dataset {
   std::vector<char> initialising;   ///< Initialisation; the observer corrects the model there
   std::vector<std::string> notes;   ///< restrictions stated by the record's reader
   GapSummary gaps;
+  /// The command between samples is interpolated: true to what acted well below the sample rate.
+  bool command_is_interpolated = false;
   /// Where set, residuals are scaled innovations of these gains instead of the errors of a
   /// simulation with the weak observer.
   std::shared_ptr<const InnovationGains> innovations;

@@ -46,8 +46,6 @@ struct FitDataset {
   /// Bound of the sensor's noise from above, as a ratio to `noise_floor_m`.
   double most_sensor_ratio = 3.0;
   double sample_time_s = 0.0;  ///< first record
-  /// The command between samples is interpolated: true to what acted well below the sample rate.
-  bool command_is_interpolated = false;
 
   [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
   /// True when whole records are held out.

@@ -74,7 +74,6 @@ FitDataset representative_segments(const FitDataset& whole) {
   result.least_floor_m = whole.least_floor_m;
   result.most_sensor_ratio = whole.most_sensor_ratio;
   result.sample_time_s = whole.sample_time_s;
-  result.command_is_interpolated = whole.command_is_interpolated;
   std::vector<double> training;
   std::vector<double> validation;
   for (std::size_t r = 0; r < whole.records.size(); ++r) {
@@ -82,6 +81,7 @@ FitDataset representative_segments(const FitDataset& whole) {
     Dataset kept;
     kept.name = record.name;
     kept.sample_time_s = record.sample_time_s;
+    kept.command_is_interpolated = record.command_is_interpolated;
     result.starts.push_back(training.size());
     for (const SampleRange& range : segments_of(record, share)) {
       Dataset piece = part(record, range.begin, range.end);

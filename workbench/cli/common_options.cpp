@@ -47,6 +47,11 @@ void add_reading(CLI::App& command, config::record::ReadOptions& reading) {
         (void)config::record::parse_resample(text);
         return std::string();
       });
+  command.add_flag("--flip", reading.flip_command, "turn the sign of the command");
+  command
+      .add_option("--advance", reading.advance_command_s,
+                  "s: take the command as much earlier than it is logged; below 0: later")
+      ->check(finite_number());
 }
 
 CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files) {

@@ -21,7 +21,7 @@ CLI::Option* add_model(CLI::App& command, std::string& file);
 CLI::Option* add_record(CLI::App& command, std::string& file);
 /// RECORD..., at least one.
 CLI::Option* add_records(CLI::App& command, std::vector<std::string>& files);
-/// --map and --resample, for every record of the command.
+/// --map, --resample, --flip and --advance, for every record of the command.
 void add_reading(CLI::App& command, config::record::ReadOptions& reading);
 /// --holdout RECORD, repeatable.
 CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files);

@@ -88,7 +88,6 @@ void add_diagnose(CLI::App& command, int& exit_code) {
       ->allow_extra_args(false);
   add_parameter_selection(command, request->selection);
   add_ignored(command, request->ignored);
-  command.add_flag("--flip", request->flip, "turn the sign of the records' commands");
   command
       .add_option("--within", request->within_s, "s: the best answer found by then; 0 is no limit")
       ->check(number_within(0.0, 1e6));

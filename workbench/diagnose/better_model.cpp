@@ -1,6 +1,9 @@
 #include "workbench/diagnose/diagnosis_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "config/schema/joined.h"
@@ -51,6 +54,11 @@ std::string better_model_text(const DiagnosisReport& outcome) {
   }
   text += comment(fall + ".");
   text += comment("The plant's own parameters are fitted too.");
+  if (const double advance_s = advanced_s(outcome); advance_s != 0.0) {
+    text += comment(
+        fmt::format("The command acts {:.4g} ms {} than it is logged: --advance {:.6g}.",
+                    1e3 * std::abs(advance_s), advance_s > 0.0 ? "earlier" : "later", advance_s));
+  }
   std::string command = outcome.prepared->command;
   std::replace(command.begin(), command.end(), '\n', ' ');
   text += "# " + command + "\n";

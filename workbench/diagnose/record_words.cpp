@@ -58,12 +58,20 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   if (checks.turned_sign()) {
     out.push_back(fmt::format(
         "The sign of the command is turned: with -u the model leaves {} times less. Diagnose again "
-        "with --flip.",
-        config::units::times_words(checks.turned_sign_ratio)));
+        "with{} --flip.",
+        config::units::times_words(checks.turned_sign_ratio),
+        outcome.prepared->reading.flip_command ? "out" : ""));
+  }
+  if (checks.command_late_s > 0.0) {
+    out.push_back(fmt::format(
+        "The command is logged {:.4g} ms after it acts: the clocks of command and position are "
+        "shifted. Diagnose again with --advance {:.6g}.",
+        1e3 * checks.command_late_s,
+        outcome.prepared->reading.advance_command_s + checks.command_late_s));
   }
   std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
-    if (checks.turned_sign()) break;
+    if (checks.turned_sign() || checks.command_late_s > 0.0) break;
     if (checks.responses[i].columns_exchanged() && !checks.columns_exchanged) continue;
     if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
     for (const std::string& text : present::response_findings(

@@ -139,15 +139,6 @@ void part_from_candidates(const DiagnosisRequest& request, selection::DiagnosisP
   }
 }
 
-std::vector<std::string> reading_options(const DiagnosisRequest& request) {
-  std::vector<std::string> options;
-  if (!request.reading.map.empty()) options.insert(options.end(), {"--map", request.reading.map});
-  if (!request.reading.resample.empty())
-    options.push_back("--resample=" + request.reading.resample);
-  for (const std::string& span : request.ignored) options.insert(options.end(), {"--ignore", span});
-  return options;
-}
-
 }  // namespace
 
 PreparedDiagnosis prepare(const DiagnosisRequest& request) {
@@ -171,11 +162,6 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   prepared.problem.plant_parameters = std::move(parameters.parameters);
   part_from_candidates(request, prepared.problem);
   require_samples(prepared.problem.data, prepared.problem.plant_parameters.size());
-  if (request.flip) {
-    for (greybox::Dataset& record : prepared.problem.data.records) {
-      for (double& u_V : record.u_V) u_V = -u_V;
-    }
-  }
   choose_effects(request, prepared.problem.candidate_effects);
   require_fixed_present(request, prepared.problem.candidate_effects);
   prepared.problem.effects_only = !request.only.empty();
@@ -186,8 +172,8 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   prepared.holdouts = request.holdouts;
   prepared.output = request.output;
   prepared.command = request.command;
-  prepared.reading_options = reading_options(request);
-  prepared.flip = request.flip;
+  prepared.reading = request.reading;
+  prepared.ignored = request.ignored;
   prepared.within_s = request.within_s;
   return prepared;
 }

@@ -24,7 +24,6 @@ struct DiagnosisRequest {
   std::vector<std::string> without;   ///< effects that are not tried
   fit::ParameterSelection selection;  ///< choice among the model's own parameters
   std::vector<std::string> ignored;   ///< "from:to" in s, or "RECORD@from:to"
-  bool flip = false;                  ///< the records' commands with the other sign
   double within_s = 0.0;              ///< the best answer after that time; 0: no limit
   std::string json;                   ///< "-": standard output
   std::string report;
@@ -44,10 +43,9 @@ struct PreparedDiagnosis {
   std::vector<std::string> holdouts;  ///< as given: scored only
   std::string output;                 ///< file of the better model; empty: none is written
   std::string command;                ///< shell command that repeats this diagnosis
-  /// Options with which `compare` reads a record as it was read here.
-  std::vector<std::string> reading_options;
-  bool flip = false;      ///< the commands have the other sign: `compare` has no option for it
-  double within_s = 0.0;  ///< time limit; 0: none
+  config::record::ReadOptions reading;
+  std::vector<std::string> ignored;  ///< as given
+  double within_s = 0.0;             ///< time limit; 0: none
   greybox::Split split = greybox::Split::blocks;
 };
 

@@ -217,24 +217,63 @@ std::string with_step(std::string command, const std::string& step_s) {
   return command.replace(value, command.find(' ', value) - value, step_s);
 }
 
+/// `command` with --flip, or without where it has it.
+std::string with_other_sign(std::string command) {
+  const std::string flip = " --flip";
+  const std::size_t at = command.find(flip);
+  return at == std::string::npos ? command + flip : command.erase(at, flip.size());
+}
+
+/// The command with --advance of as much more.
+std::string with_advance(const PreparedDiagnosis& input, double more_s) {
+  const std::string advance = " --advance ";
+  const std::string sum_s = fmt::format("{:.6g}", input.reading.advance_command_s + more_s);
+  std::string command = input.command;
+  const std::size_t at = command.find(advance);
+  if (at == std::string::npos) return command + advance + sum_s;
+  const std::size_t value = at + advance.size();
+  return command.replace(value, command.find(' ', value) - value, sum_s);
+}
+
+/// Options with which `compare` reads a record as the better model was fitted to it.
+std::vector<std::string> reading_options(const DiagnosisReport& outcome) {
+  const PreparedDiagnosis& input = *outcome.prepared;
+  std::vector<std::string> options;
+  if (!input.reading.map.empty()) options.insert(options.end(), {"--map", input.reading.map});
+  if (!input.reading.resample.empty()) options.push_back("--resample=" + input.reading.resample);
+  if (input.reading.flip_command) options.emplace_back("--flip");
+  const double advance_s = advanced_s(outcome);
+  if (advance_s != 0.0)
+    options.insert(options.end(), {"--advance", fmt::format("{:.6g}", advance_s)});
+  for (const std::string& span : input.ignored) options.insert(options.end(), {"--ignore", span});
+  return options;
+}
+
 }  // namespace
+
+double advanced_s(const DiagnosisReport& outcome) {
+  const PreparedDiagnosis& input = *outcome.prepared;
+  return input.reading.advance_command_s +
+         outcome.diagnosis.command_lead_samples * input.problem.data.sample_time_s;
+}
 
 std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.fitted()) return "";
   const selection::Diagnosis& d = outcome.diagnosis;
   const PreparedDiagnosis& input = *outcome.prepared;
   const std::string output = input.output.empty() ? " -o better.toml" : "";
-  if (d.checks && d.checks->turned_sign()) return input.command + " --flip" + output;
+  if (d.checks && d.checks->turned_sign()) return with_other_sign(input.command) + output;
+  if (d.checks && d.checks->command_late_s > 0.0)
+    return with_advance(input, d.checks->command_late_s) + output;
   if (d.checks && d.checks->misread()) return "";  // the user must decide the mapping
   if (input.output.empty()) {
     return (d.has_coarse_step() ? with_step(input.command, finer_step_words(d)) : input.command) +
            output;
   }
-  if (input.flip) return "";
   std::vector<std::string> words{
       "spoolwatch", "compare", input.output,
       input.holdouts.empty() ? input.records.front() : input.holdouts.front()};
-  words.insert(words.end(), input.reading_options.begin(), input.reading_options.end());
+  for (std::string& option : reading_options(outcome)) words.push_back(std::move(option));
   return present::shell_command(words);
 }
 

@@ -11,6 +11,9 @@ namespace workbench::diagnose {
 /// One paragraph each: fall of the error, rivals, site of the remaining error, advice.
 [[nodiscard]] std::vector<std::string> remarks(const DiagnosisReport& outcome);
 
+/// Time by which the better model's command acts before it is logged; below 0: after.
+[[nodiscard]] double advanced_s(const DiagnosisReport& outcome);
+
 /// Command that follows; empty where there is none.
 [[nodiscard]] std::string next_command(const DiagnosisReport& outcome);
 

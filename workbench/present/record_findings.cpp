@@ -55,13 +55,13 @@ std::string name_of(const SourceColumn& column) {
   return name.empty() ? header : name;
 }
 
-/// "--map u=-Command", with the unit where the header does not name it.
-std::string turning_map(const char* key, const SourceColumn& column) {
-  std::string value = (column.turned ? "" : "-") + name_of(column);
-  if (config::record::parse_header(column.header).unit.text != column.unit) {
-    value += "[" + column.unit + "]";
+/// "--map y=Position", with the unit where the header does not name it.
+std::string unturning_map(const SourceColumn& position) {
+  std::string value = name_of(position);
+  if (config::record::parse_header(position.header).unit.text != position.unit) {
+    value += "[" + position.unit + "]";
   }
-  return map_words(key, value);
+  return map_words("y", value);
 }
 
 /// "--map u=Position,y=Command".
@@ -122,6 +122,10 @@ std::vector<std::string> size_findings(const config::record::Record& record) {
   return out;
 }
 
+std::string advance_words(double s) {
+  return fmt::format("--advance {:.4g} takes the command {}", s, s > 0.0 ? "earlier" : "later");
+}
+
 }  // namespace
 
 std::vector<std::string> response_findings(const greybox::CommandResponse& response,
@@ -145,21 +149,18 @@ std::vector<std::string> response_findings(const greybox::CommandResponse& respo
         response.correlation, config::units::axis_words("extends"));
     // turned, a position leaves the stroke, unless a mapping has turned it before
     const bool back = position.turned && !position.header.empty();
-    if (back) {
-      text += "; " + turning_map("y", position);
-    } else if (!command.header.empty()) {
-      text += "; " + turning_map("u", command);
-    }
-    out.push_back(std::move(text));
+    out.push_back(text + "; " + (back ? unturning_map(position) : "--flip turns the command"));
   }
   const std::string time = config::units::words(
       config::units::quantity("delay_s", std::abs(response.delay_s), std::nan("")));
   if (response.delay_s < 0.0) {
     out.push_back("the position moves " + time +
-                  " before the command that drives it: the clocks of the two are shifted");
+                  " before the command that drives it: the clocks of the two are shifted; " +
+                  advance_words(-response.delay_s));
   } else if (response.delay_s > 0.0) {
     out.push_back("the position follows the command " + time +
-                  " late: a dead time of the rig, or clocks that are shifted");
+                  " late: a dead time of the rig, or clocks that are shifted: " +
+                  advance_words(-response.delay_s));
   }
   return out;
 }

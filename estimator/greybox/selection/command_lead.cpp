@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "config/record/command_advance.h"
 #include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
@@ -25,16 +27,6 @@ constexpr int kLeadIterations = 10;
 constexpr int kLeadFirstIterations = 2;
 constexpr double kLeadTolerance = 1e-3;
 
-/// Weights of u(-1) ... u(2) in the mean over [x - 1/2, x + 1/2] of the cubic through them, which
-/// is its value at x and a 24th of its second derivative there; u(0) alone for x = 0.
-std::array<double, 4> mean_weights(double x) {
-  if (x == 0.0) return {0.0, 1.0, 0.0, 0.0};
-  return {-x * (x - 1.0) * (x - 2.0) / 6.0 + (1.0 - x) / 24.0,
-          (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 + (3.0 * x - 2.0) / 24.0,
-          -(x + 1.0) * x * (x - 2.0) / 2.0 + (1.0 - 3.0 * x) / 24.0,
-          (x + 1.0) * x * (x - 1.0) / 6.0 + x / 24.0};
-}
-
 /// True where the model as given leaves more with the lead than without.
 bool leaves_more(const SearchContext& context, const ModelStage& first, double lead_samples) {
   SearchContext earlier = context;
@@ -46,28 +38,13 @@ bool leaves_more(const SearchContext& context, const ModelStage& first, double l
 }  // namespace
 
 void advance_command(FitDataset& data, double lead_samples) {
-  using Index = std::ptrdiff_t;
-  const double whole = std::floor(lead_samples);
-  const double share = lead_samples - whole;
-  const auto ahead = static_cast<Index>(whole);
-  const std::array<double, 4> weights = mean_weights(share);
-  data.command_is_interpolated = data.command_is_interpolated || share > 0.0;
   for (Dataset& record : data.records) {
-    const std::vector<double> logged_V = record.u_V;
     for (const SampleRange& span : segments(record)) {
-      const auto first = static_cast<Index>(span.begin);
-      const auto last = static_cast<Index>(span.end) - 1;
-      const auto at = [&](Index k) {
-        return logged_V[static_cast<std::size_t>(std::clamp(k, first, last))];
-      };
-      for (Index k = first; k <= last; ++k) {
-        double& value_V = record.u_V[static_cast<std::size_t>(k)];
-        value_V = 0.0;
-        for (Index i = 0; i < 4; ++i) {
-          value_V += weights[static_cast<std::size_t>(i)] * at(k + ahead + i - 1);
-        }
-      }
+      config::record::advance_command(
+          std::span(record.u_V).subspan(span.begin, span.end - span.begin), lead_samples);
     }
+    record.command_is_interpolated =
+        record.command_is_interpolated || config::record::interpolates(lead_samples);
   }
 }
 

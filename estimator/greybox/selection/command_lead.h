@@ -1,13 +1,8 @@
-// The time by which a command acts before the sample at which it is logged.
+// The time by which a command acts before the sample at which it is logged
+// (config/record/command_advance.h).
 //
-// Models hold each command until the next sample. A log that keeps every m-th sample of a faster
-// loop, or the samples of a continuous command, shows the command at the start of an interval in
-// which it goes on to change. A model that holds the mean of the interval, about
-//
-//   (1 - L) u(k) + L u(k+1),   L = (m - 1) / (2 m);   1/2 for a continuous command
-//
-// moves as far. Several m are tried, the mean being that of the cubic through u(k-1) ... u(k+2),
-// and leads of whole samples, which are a shift between two clocks.
+// Several logs that keep every m-th sample are tried, and leads of whole samples, which are a shift
+// between two clocks.
 #pragma once
 
 #include "estimator/greybox/selection/problem.h"
@@ -17,8 +12,7 @@ namespace estimator::greybox::selection {
 
 struct SearchStart;
 
-/// Each record's command, shifted earlier by a number of samples; its mean over an interval where
-/// the number is not whole; held at a segment's ends.
+/// Each record's command, shifted earlier by a number of samples; each segment by itself.
 void advance_command(FitDataset& data, double lead_samples);
 
 struct CommandLead {

@@ -187,10 +187,8 @@ void note_gains(InnovationSearch& search, const InnovationStage& final) {
 SearchContext without_holdouts(SearchContext context) {
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
-    const bool interpolated = context.problem.data.command_is_interpolated;
     records.resize(context.problem.data.fitted_records);
     context.problem.data = fit_dataset(std::move(records), {});
-    context.problem.data.command_is_interpolated = interpolated;
     assume_noise_floor(context.problem.data);
   }
   return context;

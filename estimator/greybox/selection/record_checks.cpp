@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 
+#include "estimator/greybox/clock_shift.h"
 #include "estimator/greybox/fit.h"
 #include "estimator/greybox/motion_scale.h"
 #include "estimator/greybox/observer_simulation.h"
@@ -20,6 +21,10 @@ namespace {
 constexpr double kNotMadeUp = 0.5;
 /// A turned sign must explain the record that much better than the sign as given.
 constexpr double kTurned = 3.0;
+/// The least shift that a response shows.
+constexpr double kLeastShift_samples = 1.5;
+/// Shifts up to this are among those that a search tries (command_lead.h).
+constexpr double kMostLead_samples = 2.0;
 
 /// Enough to distinguish plants, and signs.
 constexpr int kCheckIterations = 12;
@@ -144,6 +149,7 @@ StrokeOverrun stroke_excess(plant_sim::ModelFile model, const FitDataset& data) 
 struct GivenMotion {
   MotionRatio ratio;
   double rms_m = 0.0;
+  std::vector<double> speed_mps;  ///< the model's, one per sample
 };
 
 GivenMotion motion_of(const plant_sim::ModelFile& model, const Dataset& record) {
@@ -155,7 +161,22 @@ GivenMotion motion_of(const plant_sim::ModelFile& model, const Dataset& record) 
   run.residuals(Eigen::MatrixXd(0, 1), residual_m);
   const std::vector<double> error_m(residual_m.data(), residual_m.data() + residual_m.rows());
   return {motion_ratio(record, error_m, kObserver_per_s, run.plant_start()),
-          residual_m.norm() / std::sqrt(static_cast<double>(residual_m.rows()))};
+          residual_m.norm() / std::sqrt(static_cast<double>(residual_m.rows())), run.speed_mps()};
+}
+
+/// RecordChecks::command_late_s, by the record whose response shows most.
+double command_late_s(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
+                      const std::vector<CommandResponse>& responses) {
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < responses.size(); ++i) {
+    if (responses[i].delay_s < responses[most].delay_s) most = i;
+  }
+  const Dataset& record = records[most];
+  const double by_response = -responses[most].delay_s / record.sample_time_s;
+  if (!(by_response >= kLeastShift_samples)) return 0.0;
+  const std::vector<double> speed_mps = motion_of(model, record).speed_mps;
+  const double late_samples = command_late_samples(record, speed_mps, by_response);
+  return late_samples > kMostLead_samples ? late_samples * record.sample_time_s : 0.0;
 }
 
 }  // namespace
@@ -188,6 +209,7 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   checks.columns_exchanged =
       !made_up && std::any_of(checks.responses.begin(), checks.responses.end(),
                               [](const CommandResponse& r) { return r.columns_exchanged(); });
+  checks.command_late_s = command_late_s(model, data.records, checks.responses);
   const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
                                   [](const CommandResponse& r) { return r.with_command(); });
   if (driven || checks.columns_exchanged) return checks;

@@ -38,10 +38,15 @@ struct RecordChecks {
   /// Command and position of a record are exchanged, by their response, and the model does not
   /// follow them as they are.
   bool columns_exchanged = false;
+  /// The command is logged after it acts, by the response and the model's motion; 0: it is not, or
+  /// by no more than a search for effects tries.
+  double command_late_s = 0.0;
 
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
   /// True for a record that has to be read differently before any effect is sought.
-  [[nodiscard]] bool misread() const { return turned_sign() || wrong_scale || columns_exchanged; }
+  [[nodiscard]] bool misread() const {
+    return turned_sign() || wrong_scale || columns_exchanged || command_late_s > 0.0;
+  }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }
 };
 

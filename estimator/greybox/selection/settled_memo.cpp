@@ -104,9 +104,11 @@ std::string SettledMemo::key_of(const SearchContext& plain, const ModelStage& mo
                              problem.data.most_sensor_ratio, problem.data.sample_time_s}) {
     key.add(value);
   }
-  key.add(problem.data.command_is_interpolated);
   key.add(plant_sim::print_model(in_use(problem.model, model)));
-  for (const Dataset& record : problem.data.records) key.add(record.name);
+  for (const Dataset& record : problem.data.records) {
+    key.add(record.name);
+    key.add(record.command_is_interpolated);
+  }
   key.add(problem.plant_parameters.size());
   key.add(model.added.size());
   for (const std::string& name : model.added) key.add(name);

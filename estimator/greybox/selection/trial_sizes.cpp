@@ -209,7 +209,7 @@ std::vector<double> resonances_in(const FitDataset& data) {
   double most_Hz = 0.0;
   double longest_s = 0.0;
   for (const Dataset& record : data.records) {
-    const double share = data.command_is_interpolated ? kOfInterpolated : kOfSampleRate;
+    const double share = record.command_is_interpolated ? kOfInterpolated : kOfSampleRate;
     most_Hz = std::max(most_Hz, share / record.sample_time_s);
     longest_s = std::max(longest_s, record.sample_time_s * static_cast<double>(record.size()));
   }

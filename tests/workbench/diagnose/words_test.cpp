@@ -286,11 +286,24 @@ TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' bench.csv");
   outcome.input.holdouts = {"other.csv"};
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' other.csv");
-  outcome.input.reading_options = {"--map", "u=cmd[V]", "--ignore", "3:4"};
+  outcome.input.reading.map = "u=cmd[V]";
+  outcome.input.ignored = {"3:4"};
   EXPECT_EQ(next_command(outcome),
             "spoolwatch compare 'my rig.toml' other.csv --map 'u=cmd[V]' --ignore 3:4");
-  outcome.input.flip = true;
-  EXPECT_EQ(next_command(outcome), "") << "compare would read the other sign";
+  outcome.input.reading.flip_command = true;
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch compare 'my rig.toml' other.csv --map 'u=cmd[V]' --flip --ignore 3:4");
+}
+
+TEST(Words, NextCommandTakesTheCommandAsMuchEarlierAsTheBetterModelDoes) {
+  ExampleReport outcome;
+  outcome.input.output = "better.toml";
+  outcome.input.problem.data.sample_time_s = 0.01;
+  outcome.diagnosis.command_lead_samples = 0.25;
+  EXPECT_EQ(next_command(outcome), "spoolwatch compare better.toml bench.csv --advance 0.0025");
+  EXPECT_THAT(better_model_text(outcome), HasSubstr("--advance 0.0025."));
+  outcome.input.reading.advance_command_s = 0.02;
+  EXPECT_EQ(next_command(outcome), "spoolwatch compare better.toml bench.csv --advance 0.0225");
 }
 
 TEST(Words, NextCommandTurnsATurnedSign) {
@@ -298,6 +311,8 @@ TEST(Words, NextCommandTurnsATurnedSign) {
   outcome.diagnosis.checks.emplace();
   outcome.diagnosis.checks->turned_sign_ratio = 100.0;
   EXPECT_EQ(next_command(outcome), "spoolwatch diagnose rig.toml bench.csv --flip -o better.toml");
+  outcome.input.command += " --flip";
+  EXPECT_EQ(next_command(outcome), "spoolwatch diagnose rig.toml bench.csv -o better.toml");
 }
 
 TEST(Words, NextCommandTakesAFinerStepWhereTheStepIsCoarse) {
@@ -374,6 +389,20 @@ TEST(Words, AMisreadRecordHasNoNextCommandAndIsNotSearched) {
   EXPECT_THAT(verdict_words(outcome.diagnosis), testing::Not(HasSubstr("--prior")));
   outcome.diagnosis.checks->wrong_scale = true;
   EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("free it with --prior"));
+}
+
+TEST(Words, ACommandThatIsLoggedLateIsTakenEarlierByTheNextCommand) {
+  ExampleReport outcome;
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  outcome.diagnosis.checks.emplace();
+  outcome.diagnosis.checks->command_late_s = 0.05;
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch diagnose rig.toml bench.csv --advance 0.05 -o better.toml");
+  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("logged 50 ms after it acts")));
+  outcome.input.reading.advance_command_s = 0.01;
+  outcome.input.command = "spoolwatch diagnose rig.toml bench.csv --advance 0.01 --quiet";
+  EXPECT_EQ(next_command(outcome),
+            "spoolwatch diagnose rig.toml bench.csv --advance 0.06 --quiet -o better.toml");
 }
 
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {

@@ -10,6 +10,7 @@ namespace workbench::present {
 namespace {
 
 using config::record::Record;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -85,13 +86,13 @@ TEST(RecordFindings, AskForMillivoltsAndMilliseconds) {
                           StartsWith("the time steps by 5 s: is it ms? --map 't=Time[ms]'")));
 }
 
-TEST(RecordFindings, NameASignThatIsTurnedWithTheMapThatTurnsIt) {
+TEST(RecordFindings, NameASignThatIsTurnedWithWhatTurnsItBack) {
   Record record = servo();
   for (double& u_V : record.u_V) u_V = -u_V;
   EXPECT_THAT(record_findings(record),
               ElementsAre(HasSubstr("moves against the command (speed and command correlate by "
-                                    "-1.00): is a sign turned? A positive command extends; --map "
-                                    "'u=-Command[V]'")));
+                                    "-1.00): is a sign turned? A positive command extends; --flip "
+                                    "turns the command")));
   record.origins.back().factor = -1.0;  // a mapping has turned it
   EXPECT_THAT(record_findings(record), ElementsAre(EndsWith("--map y=Position")));
   record.origins.back().header = "Pos";
@@ -110,8 +111,10 @@ TEST(RecordFindings, NameClocksThatAreShifted) {
   record.u_V.erase(record.u_V.end() - 20, record.u_V.end());
   record.y_m.erase(record.y_m.begin(), record.y_m.begin() + 20);
   record.t_s.resize(record.y_m.size());
-  EXPECT_THAT(record_findings(record),
-              ElementsAre(HasSubstr("moves 100 ms before the command that drives it: the clocks")));
+  EXPECT_THAT(
+      record_findings(record),
+      ElementsAre(AllOf(HasSubstr("moves 100 ms before the command that drives it: the clocks"),
+                        EndsWith("; --advance 0.1 takes the command earlier"))));
 }
 
 TEST(StrokeFinding, NamesTheStrokeAndTheUnit) {

@@ -90,6 +90,31 @@ TEST(RecordChecks, ExchangedColumnsAreNoticed) {
   EXPECT_FALSE(checks.turned_sign());
 }
 
+/// The positions as they are, the command by `shift` samples late.
+Dataset command_late(const Dataset& whole, std::size_t shift) {
+  const auto ahead = static_cast<std::ptrdiff_t>(shift);
+  return estimator::greybox::dataset_of(whole.sample_time_s,
+                                        {whole.u_V.begin(), whole.u_V.end() - ahead},
+                                        {whole.y_m.begin() + ahead, whole.y_m.end()});
+}
+
+TEST(RecordChecks, ACommandThatIsLoggedLateIsNoticedToTheSample) {
+  const Dataset whole = record();
+  const RecordChecks checks = checked(command_late(whole, 8));
+  EXPECT_NEAR(checks.command_late_s, 8.0 * whole.sample_time_s, 1e-12);
+  EXPECT_TRUE(checks.misread());
+  EXPECT_EQ(checked(whole).command_late_s, 0.0);
+}
+
+// An offset makes the model drift by far more than the shift changes its error.
+TEST(RecordChecks, ACommandThatIsLoggedLateIsNoticedBesideAnEffect) {
+  const Dataset whole = dataset_of(truth::simulate(
+      truth::parse_case("motion=multisine,length_s=10,null_bias.offset_V=0.1", 52)));
+  const RecordChecks checks = checked(command_late(whole, 4));
+  EXPECT_NEAR(checks.command_late_s, 4.0 * whole.sample_time_s, 1e-12);
+  EXPECT_EQ(checked(whole).command_late_s, 0.0);
+}
+
 /// Rod side over cap side of a fitted hydraulic_cylinder, whose cap side is the model file's area.
 double rod_side_ratio(const PlantFit& cylinder) {
   const auto area = std::find_if(cylinder.values.begin(), cylinder.values.end(),
