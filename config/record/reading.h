@@ -22,6 +22,11 @@ struct ReadOptions {
   double advance_command_s = 0.0;  ///< the command acts earlier than logged by it; < 0: later
   bool position_optional = false;  ///< a command alone will do
   std::string channel;             ///< LCM channel; empty: kSampleChannel
+
+  /// True where a record is to be read otherwise than as it stands.
+  [[nodiscard]] bool given() const {
+    return !map.empty() || !resample.empty() || flip_command || advance_command_s != 0.0;
+  }
 };
 
 struct MapEntry {

@@ -28,6 +28,9 @@ enum class ScaleError { none, thousandfold, thousandth };
 /// Motions that follow the model's, but are about 1000 times as far, or a thousandth.
 [[nodiscard]] ScaleError scale_error(const MotionRatio& motion) noexcept;
 
+/// Longer than any cylinder's stroke or axis's travel on a test stand.
+inline constexpr double kLongest_m = 30.0;
+
 struct ValueRange {
   double low, high;
 };

@@ -93,6 +93,7 @@ void run_live(CompareArguments& a) {
        {std::pair(!a.request.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
         std::pair(a.all, "--all"), std::pair(!a.residuals.empty(), "--residuals"),
         std::pair(!a.request.ignored.empty(), "--ignore"),
+        std::pair(a.request.reading.given(), "--map, --resample, --flip or --advance"),
         std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
     if (given) throw UsageError(std::string("--live: not together with ") + option);
   }

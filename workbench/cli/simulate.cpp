@@ -267,8 +267,8 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       exchange::write_record_file(simulate_command(*arguments), arguments->output, "-o");
       return;
     }
-    if (!arguments->reading.map.empty() || !arguments->reading.resample.empty()) {
-      throw UsageError("--map, --resample: need --command");
+    if (arguments->reading.given()) {
+      throw UsageError("--map, --resample, --flip, --advance: need --command");
     }
     simulate::Scenario scenario = read_scenario(*arguments);
     const present::PrintedAxis axis(present::motion_of(scenario.model));

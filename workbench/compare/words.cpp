@@ -160,12 +160,6 @@ std::string drift_words(const validation::Comparison& c) {
          units::moving_part() + " runs " + text + ".";
 }
 
-std::string stroke_words(const validation::Comparison& c) {
-  if (!(c.stroke_m > 0.0)) return {};
-  const auto [low, high] = estimator::greybox::usual_range(c.record.y_m);
-  return present::stroke_finding(low, high, c.stroke_m, c.record.position_column);
-}
-
 std::string dependence_words(const validation::Comparison& c, const DisturbanceCheck& check) {
   if (c.independence_p < kSignificant) {
     return "The residual depends on earlier commands: parameters are off or dynamics are missing.";
@@ -280,20 +274,18 @@ std::vector<std::string> notes(const validation::Comparison& c) {
                       c.command.most_V, percent));
       break;
   }
-  const auto add = [&out](std::string text) {
-    if (!text.empty()) out.push_back(std::move(text));
-  };
   const bool explained = c.floor_ratio() <= validation::kAtFloor;
-  const std::string in_stroke = explained ? std::string() : stroke_words(c);
-  add(in_stroke);
-  if (!explained && in_stroke.empty()) {
-    add(present::motion_finding(c.motion, c.record.command_column, c.record.position_column));
-  }
+  const std::string size =
+      explained
+          ? std::string()
+          : present::size_finding(estimator::greybox::usual_range(c.record.y_m), c.stroke_m,
+                                  c.motion, c.record.command_column, c.record.position_column);
+  if (!size.empty()) out.push_back(size);
   for (std::string& text :
        present::response_findings(c.response, c.record.command_column, c.record.position_column)) {
     out.push_back(std::move(text));
   }
-  if (c.beyond_stroke && in_stroke.empty()) {
+  if (c.beyond_stroke && size.empty()) {
     out.push_back(
         fmt::format("y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
                     1e3 * c.beyond_stroke->low_m, 1e3 * c.beyond_stroke->high_m,

@@ -29,17 +29,6 @@ std::string command_lead_words(double lead_samples) {
       lead_samples);
 }
 
-/// The size of the positions against the stroke, or of the motion against the model's.
-std::string size_words(const selection::RecordChecks& checks, const greybox::Dataset& record) {
-  std::string text;
-  if (checks.stroke_m > 0.0) {
-    text = present::stroke_finding(checks.low_m, checks.high_m, checks.stroke_m,
-                                   record.position_column);
-  }
-  if (!text.empty()) return text;
-  return present::motion_finding(checks.motion, record.command_column, record.position_column);
-}
-
 /// True where a model explains how the position follows the command: what the response alone looks
 /// like is then the plant's doing, a dead time apart, for which clocks may be to blame.
 bool is_explained(const selection::Diagnosis& d, const greybox::CommandResponse& response) {
@@ -57,10 +46,19 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   const std::vector<greybox::Dataset>& records = outcome.prepared->problem.data.records;
   if (checks.turned_sign()) {
     out.push_back(fmt::format(
-        "The sign of the command is turned: with -u the model leaves {} times less. Diagnose again "
-        "with{} --flip.",
+        "The sign of the command is turned: with -u {} times less of the motion remains. Diagnose "
+        "again with{} --flip.",
         config::units::times_words(checks.turned_sign_ratio),
         outcome.prepared->reading.flip_command ? "out" : ""));
+  }
+  if (checks.exchanged_ratio > 1.0) {
+    const std::string map =
+        present::exchanging_map(records.front().command_column, records.front().position_column);
+    out.push_back(fmt::format(
+        "Command and position look exchanged: the other way round {} times less of the motion "
+        "remains{}.",
+        config::units::times_words(checks.exchanged_ratio),
+        map.empty() ? "" : "; read them with " + map));
   }
   if (checks.command_late_s > 0.0) {
     out.push_back(fmt::format(
@@ -80,7 +78,11 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
       said.insert(records[i].name);
     }
   }
-  const std::string size = records.empty() ? std::string() : size_words(checks, records.front());
+  const std::string size =
+      records.empty()
+          ? std::string()
+          : present::size_finding({checks.low_m, checks.high_m}, checks.stroke_m, checks.motion,
+                                  records.front().command_column, records.front().position_column);
   if (!size.empty()) out.push_back(records.front().name + ": " + size + ".");
   if (checks.outside_stroke() && size.empty()) {
     std::vector<std::string> ends;

@@ -22,8 +22,6 @@ using greybox::SourceColumn;
 constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kThousandths{
     {{"m", "mm"}, {"mm", "um"}, {"V", "mV"}, {"A", "mA"}, {"s", "ms"}, {"ms", "us"}, {"kN", "N"}}};
 
-/// Longer than any cylinder's stroke or axis's travel on a test stand.
-constexpr double kLongest_m = 30.0;
 constexpr double kGreatest_V = 1000.0;
 constexpr double kGreatest_A = 1000.0;
 constexpr double kSlowest_s = 1.0;
@@ -64,11 +62,6 @@ std::string unturning_map(const SourceColumn& position) {
   return map_words("y", value);
 }
 
-/// "--map u=Position,y=Command".
-std::string exchanging_map(const SourceColumn& command, const SourceColumn& position) {
-  return map_words("u", name_of(position) + ",y=" + name_of(command));
-}
-
 /// "is it mm? --map 'y=Position[mm]'"
 std::string unit_question(const char* key, const SourceColumn& column, const std::string& unit) {
   if (unit.empty()) return "is its unit right?";
@@ -94,14 +87,10 @@ SourceColumn source_of(const config::record::Record& record, const std::string& 
 
 std::vector<std::string> size_findings(const config::record::Record& record) {
   std::vector<std::string> out;
-  const auto [low_m, high_m] = greybox::usual_range(record.y_m);
-  const bool lengths =
-      record.position_unit == "m" && config::units::motion() == config::units::Motion::linear;
-  if (record.has_position && lengths && high_m - low_m > kLongest_m) {
-    const SourceColumn source = source_of(record, "y_m");
-    out.push_back(
-        fmt::format("the position spans {:.3g} m, more than a stand's stroke: ", high_m - low_m) +
-        unit_question("y", source, thousandth_of(source.unit)));
+  if (record.has_position && record.position_unit == "m") {
+    const auto [low_m, high_m] = greybox::usual_range(record.y_m);
+    std::string text = travel_finding(low_m, high_m, source_of(record, "y_m"));
+    if (!text.empty()) out.push_back(std::move(text));
   }
   const auto [low, high] = greybox::usual_range(record.u_V);
   const double greatest = std::max(std::abs(low), std::abs(high));
@@ -128,19 +117,23 @@ std::string advance_words(double s) {
 
 }  // namespace
 
+std::string exchanging_map(const SourceColumn& command, const SourceColumn& position) {
+  if (command.header.empty() || position.header.empty()) return {};
+  return map_words("u", name_of(position) + ",y=" + name_of(command));
+}
+
 std::vector<std::string> response_findings(const greybox::CommandResponse& response,
                                            const SourceColumn& command,
                                            const SourceColumn& position) {
   std::vector<std::string> out;
   if (response.columns_exchanged()) {
-    std::string text = fmt::format(
+    const std::string text = fmt::format(
         "command and position look exchanged (the command's derivative correlates with the "
         "position "
         "by {:.2f}, as a position's does with its command): name the columns the other way round",
         response.exchanged);
-    if (!command.header.empty() && !position.header.empty())
-      text += ", " + exchanging_map(command, position);
-    return {std::move(text)};
+    const std::string map = exchanging_map(command, position);
+    return {map.empty() ? text : text + ", " + map};
   }
   if (response.against_command()) {
     std::string text = fmt::format(
@@ -185,6 +178,13 @@ std::string stroke_finding(double low_m, double high_m, double stroke_m,
   return {};
 }
 
+std::string travel_finding(double low_m, double high_m, const SourceColumn& position) {
+  const bool linear = config::units::motion() == config::units::Motion::linear;
+  if (!linear || !(high_m - low_m > greybox::kLongest_m)) return {};
+  return fmt::format("the position spans {:.3g} m, more than a stand's stroke: ", high_m - low_m) +
+         unit_question("y", position, thousandth_of(position.unit));
+}
+
 std::string motion_finding(const greybox::MotionRatio& motion, const SourceColumn& command,
                            const SourceColumn& position) {
   const ScaleError error = greybox::scale_error(motion);
@@ -206,6 +206,17 @@ std::string motion_finding(const greybox::MotionRatio& motion, const SourceColum
             "the command: " + unit_question("u", command, of_command);
   }
   return text;
+}
+
+std::string size_finding(const greybox::ValueRange& range, double stroke_m,
+                         const greybox::MotionRatio& motion, const SourceColumn& command,
+                         const SourceColumn& position) {
+  const bool has_stroke = stroke_m > 0.0;
+  std::string text =
+      has_stroke ? stroke_finding(range.low, range.high, stroke_m, position) : std::string();
+  if (text.empty()) text = motion_finding(motion, command, position);
+  if (!text.empty() || has_stroke) return text;
+  return travel_finding(range.low, range.high, position);
 }
 
 std::vector<std::string> record_findings(const config::record::Record& record) {

@@ -17,6 +17,7 @@
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/other_readings.h"
 #include "estimator/greybox/selection/record_differences.h"
 #include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/greybox/selection/settled_memo.h"
@@ -306,6 +307,7 @@ std::optional<RecordChecks> checks_of(const SearchContext& search, const SearchS
   const double rms_m = start.first.fitted.validation_rms_m;
   if (!(rms_m > kFarFromFloor * noise_floor_m)) return {};
   RecordChecks checks = check_records(search, rms_m);
+  try_other_readings(search, start, checks);
   // an effect that explains the record has read it rightly
   if (checks.misread() && is_explained(search, start.branch.stage)) return {};
   return checks;

@@ -21,8 +21,8 @@ struct PlantFit {
 inline constexpr double kBetterPlant = 0.7;
 
 struct RecordChecks {
-  /// With the command's sign turned, the model fits at least this much better; 1: it does not, or
-  /// the command drives a record's motion.
+  /// With the command's sign turned, the model, or the best effect beside it, leaves that many
+  /// times less; 1: it does not, or the command drives a record's motion.
   double turned_sign_ratio = 1.0;
   /// Positions outside a stroke that the model has: least and greatest, m; equal where all are in.
   double below_m = 0.0;
@@ -33,11 +33,15 @@ struct RecordChecks {
   std::vector<CommandResponse> responses;  ///< one per record
   MotionRatio motion;                      ///< first record, by the model as given
   /// The motion is about 1000 times the model's, or a thousandth, or the positions span far more
-  /// than the stroke, as millimetres taken for metres do, and no fit makes up for it.
+  /// than the stroke, as millimetres taken for metres do, and no fit makes up for it; or they span
+  /// more than any stand, and effects leave much less of the motion divided by 1000.
   bool wrong_scale = false;
   /// Command and position of a record are exchanged, by their response, and the model does not
   /// follow them as they are.
   bool columns_exchanged = false;
+  /// Exchanged, effects leave that many times less of the motion; 1: they do not, or the response
+  /// tells (other_readings.h).
+  double exchanged_ratio = 1.0;
   /// The command is logged after it acts, by the response and the model's motion; 0: it is not, or
   /// by no more than a search for effects tries.
   double command_late_s = 0.0;

@@ -391,6 +391,20 @@ TEST(Words, AMisreadRecordHasNoNextCommandAndIsNotSearched) {
   EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("free it with --prior"));
 }
 
+TEST(Words, ExchangedColumnsThatTheSearchFoundComeWithTheirMap) {
+  ExampleReport outcome;
+  greybox::Dataset record;
+  record.command_column = {"Force", "V", false};
+  record.position_column = {"Pos [m]", "m", false};
+  outcome.input.problem.data.records = {record};
+  outcome.diagnosis.checks.emplace();
+  outcome.diagnosis.checks->columns_exchanged = true;
+  outcome.diagnosis.checks->exchanged_ratio = 40.0;
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("40.0 times less of the motion remains; read them "
+                                 "with --map u=Pos,y=Force.")));
+}
+
 TEST(Words, ACommandThatIsLoggedLateIsTakenEarlierByTheNextCommand) {
   ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::unexplained;

@@ -127,6 +127,15 @@ TEST(StrokeFinding, NamesTheStrokeAndTheUnit) {
   EXPECT_EQ(stroke_finding(0.1, 0.5, 0.61, metres), "");
 }
 
+TEST(SizeFinding, AsksAnAxisWithoutAStrokeForItsTravel) {
+  const greybox::MotionRatio unlike{30.0, 0.1};
+  const greybox::SourceColumn metres{"Pos", "m"};
+  EXPECT_EQ(size_finding({2.0, 73.4}, 0.0, unlike, {"Cmd", "V"}, metres),
+            "the position spans 71.4 m, more than a stand's stroke: is it mm? --map 'y=Pos[mm]'");
+  EXPECT_EQ(size_finding({2.0, 23.4}, 0.0, unlike, {"Cmd", "V"}, metres), "");
+  EXPECT_EQ(size_finding({2.0, 73.4}, 100.0, unlike, {"Cmd", "V"}, metres), "");
+}
+
 TEST(MotionFinding, NamesThePositionOrTheCommand) {
   EXPECT_EQ(motion_finding({603.0, 0.99}, {"Cmd", "mV"}, {"Pos", "m"}),
             "the rod moves 603 times as far as the model: the position: is it mm? --map "

@@ -1,0 +1,78 @@
+#include "estimator/greybox/selection/other_readings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/greybox/motion_scale.h"
+#include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/problem.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// What one reading leaves must be that many times what the other does.
+constexpr double kMuchMore = 3.0;
+constexpr double kThousand = 1000.0;
+
+/// Standard deviation of all positions about each record's mean.
+double motion_m(const FitDataset& data) {
+  double squares = 0.0;
+  double samples = 0.0;
+  for (const Dataset& record : data.records) {
+    double mean_m = 0.0;
+    for (const double y_m : record.y_m) mean_m += y_m / static_cast<double>(record.size());
+    for (const double y_m : record.y_m) squares += (y_m - mean_m) * (y_m - mean_m);
+    samples += static_cast<double>(record.size());
+  }
+  return std::sqrt(squares / samples);
+}
+
+/// Error of the first round of a search, of the motion that there is to be explained.
+double left_ratio(const SearchContext& context, const SearchStart& start) {
+  return start.branch.stage.fitted.validation_rms_m / motion_m(context.problem.data);
+}
+
+template <class Reading>
+double left_by(const SearchContext& context, const Reading& read) {
+  SearchContext other = without_holdouts(context);
+  std::vector<Dataset> records = std::move(other.problem.data.records);
+  for (Dataset& record : records) read(record);
+  other.problem.data = fit_dataset(std::move(records), {});
+  assume_noise_floor(other.problem.data);
+  return left_ratio(other, start_search(other));
+}
+
+}  // namespace
+
+void try_other_readings(const SearchContext& context, const SearchStart& start,
+                        RecordChecks& checks) {
+  if (checks.misread() || is_explained(context, start.branch.stage)) return;
+  const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
+                                  [](const CommandResponse& r) { return r.with_command(); });
+  const bool has_stroke = checks.stroke_m > 0.0;  // which tells by itself
+  const double left = left_ratio(context, start);
+  if (!has_stroke && checks.high_m - checks.low_m > kLongest_m) {
+    const double scaled = left_by(context, [](Dataset& record) {
+      for (double& y_m : record.y_m) y_m /= kThousand;
+    });
+    checks.wrong_scale = !context.cancelled() && kMuchMore * scaled < left;
+  }
+  if (driven || checks.wrong_scale) return;
+  const double turned = left_by(context, [](Dataset& record) {
+    for (double& u_V : record.u_V) u_V = -u_V;
+  });
+  const double exchanged =
+      has_stroke ? left
+                 : left_by(context, [](Dataset& record) { std::swap(record.u_V, record.y_m); });
+  if (context.cancelled() || !(kMuchMore * std::min(turned, exchanged) < left)) return;
+  if (turned <= exchanged) {
+    checks.turned_sign_ratio = left / turned;
+  } else {
+    checks.columns_exchanged = true;
+    checks.exchanged_ratio = left / exchanged;
+  }
+}
+
+}  // namespace estimator::greybox::selection
