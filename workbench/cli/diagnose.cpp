@@ -31,7 +31,7 @@ void write(const DiagnosisReport& outcome, const DiagnosisRequest& request) {
   if (request.json != "-") print(outcome, std::cout);
   const auto write_model = [&] {
     if (request.output.empty()) return;
-    if (outcome.fitted()) {
+    if (outcome.has_better_model()) {
       config::record::write_whole(request.output, better_model_text(outcome));
     } else {
       std::cerr << "spoolwatch: " << request.output

@@ -195,6 +195,19 @@ void add_disturbance(const validation::Comparison& c,
                     "; `diagnose` weighs it against the effects of the library.");
 }
 
+/// A size that a unit may account for; empty where the model follows the record.
+std::string size_finding_of(const validation::Comparison& c) {
+  if (c.floor_ratio() <= validation::kAtFloor) return {};
+  return present::size_finding(estimator::greybox::usual_range(c.record.y_m), c.stroke_m, c.motion,
+                               c.record.command_column, c.record.position_column);
+}
+
+/// True for a record of which a note asks whether it was read rightly: what the error looks like
+/// then says nothing of the model. A sign that is turned has words of its own.
+bool may_be_misread(const validation::Comparison& c) {
+  return c.response.columns_exchanged() || c.response.delay_s < 0.0 || !size_finding_of(c).empty();
+}
+
 }  // namespace
 
 Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
@@ -215,6 +228,12 @@ Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
     if (c.independence_p < kSignificant) {
       add("A trace of the command is left in the residual, too small to show in its size.");
     }
+    return w;
+  }
+  if (may_be_misread(c)) {
+    w.judgement = Judgement::fails_throughout;
+    w.verdict = "Probably misread: read the record as the note says before the model is blamed.";
+    add(size_words(c));
     return w;
   }
   if (check.found) {
@@ -274,12 +293,7 @@ std::vector<std::string> notes(const validation::Comparison& c) {
                       c.command.most_V, percent));
       break;
   }
-  const bool explained = c.floor_ratio() <= validation::kAtFloor;
-  const std::string size =
-      explained
-          ? std::string()
-          : present::size_finding(estimator::greybox::usual_range(c.record.y_m), c.stroke_m,
-                                  c.motion, c.record.command_column, c.record.position_column);
+  const std::string size = size_finding_of(c);
   if (!size.empty()) out.push_back(size);
   for (std::string& text :
        present::response_findings(c.response, c.record.command_column, c.record.position_column)) {

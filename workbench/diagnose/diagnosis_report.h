@@ -31,6 +31,9 @@ struct DiagnosisReport {
 
   /// False when the records did not move enough for anything to be fitted.
   [[nodiscard]] bool fitted() const { return diagnosis.final.theta.size() > 0; }
+  /// True for a record that has to be read differently before any effect is sought.
+  [[nodiscard]] bool misread() const { return diagnosis.checks && diagnosis.checks->misread(); }
+  [[nodiscard]] bool has_better_model() const { return fitted() && !misread(); }
 };
 
 /// Diagnoses with the options of `prepared`, which must outlive the report; the laws that are
@@ -45,8 +48,8 @@ void print(const DiagnosisReport& outcome, std::ostream& out);
 [[nodiscard]] std::string to_json(const DiagnosisReport& outcome);
 
 /// The better model's file: the model as text, and at its top what was changed and why.
-/// With nothing missing it is the given model with its fitted parameters. outcome.fitted() must
-/// hold.
+/// With nothing missing it is the given model with its fitted parameters.
+/// outcome.has_better_model() must hold.
 [[nodiscard]] std::string better_model_text(const DiagnosisReport& outcome);
 
 /// The report of a diagnosis: verdict and figures at the top, the falling error, the candidates of

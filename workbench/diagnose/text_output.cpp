@@ -147,7 +147,7 @@ void print(const DiagnosisReport& outcome, std::ostream& out) {
   const selection::Diagnosis& d = outcome.diagnosis;
   out << wrapped(verdict_words(d));
   for (const std::string& remark : remarks(outcome)) out << wrapped(remark);
-  if (outcome.fitted()) {
+  if (outcome.has_better_model()) {
     print_steps(d, out);
     print_candidates(d, out);
     print_parameters(outcome, out);

@@ -70,11 +70,15 @@ std::string unexplained_words(const selection::Diagnosis& d) {
            rest + ".";
   }
   if (d.checks && d.checks->misread()) {
+    const auto gain = std::find_if(d.parameters.begin(), d.parameters.end(), [](const auto& one) {
+      return one.name.find("gain") != std::string::npos;
+    });
     return "Unexplained: " + rest +
            ". What is missing was not sought: read the record as it says below first" +
-           (d.checks->wrong_scale
-                ? ", or, where the file's gain is off, free it with --prior NAME=none."
-                : ".");
+           (gain == d.parameters.end() || !d.checks->wrong_scale
+                ? "."
+                : ", or, where the file's gain is off, free it with --prior " + gain->name +
+                      "=none.");
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {

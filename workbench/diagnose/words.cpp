@@ -152,6 +152,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back(interruption_words(outcome));
   }
   for (std::string& text : record_remarks(outcome)) out.push_back(std::move(text));
+  if (outcome.misread()) return out;  // the rest is about a record read wrongly
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   if (d.loses_motion) {
     out.emplace_back(
@@ -265,7 +266,7 @@ std::string next_command(const DiagnosisReport& outcome) {
   if (d.checks && d.checks->turned_sign()) return with_other_sign(input.command) + output;
   if (d.checks && d.checks->command_late_s > 0.0)
     return with_advance(input, d.checks->command_late_s) + output;
-  if (d.checks && d.checks->misread()) return "";  // the user must decide the mapping
+  if (outcome.misread()) return "";  // the user must decide the mapping
   if (input.output.empty()) {
     return (d.has_coarse_step() ? with_step(input.command, finer_step_words(d)) : input.command) +
            output;

@@ -80,7 +80,7 @@ bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const
         result.summary["only"] = request.only;
         result.summary["model"] = diagnose::file_name(request.model);
         result.summary["record"] = diagnose::file_name(request.records.front());
-        if (!report.fitted()) return result;
+        if (!report.has_better_model()) return result;
         result.model = request.output;
         result.text = diagnose::better_model_text(report);
         const auto& missing = report.diagnosis.missing;

@@ -388,7 +388,10 @@ TEST(Words, AMisreadRecordHasNoNextCommandAndIsNotSearched) {
   EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("What is missing was not sought"));
   EXPECT_THAT(verdict_words(outcome.diagnosis), testing::Not(HasSubstr("--prior")));
   outcome.diagnosis.checks->wrong_scale = true;
-  EXPECT_THAT(verdict_words(outcome.diagnosis), HasSubstr("free it with --prior"));
+  EXPECT_THAT(verdict_words(outcome.diagnosis), testing::Not(HasSubstr("--prior")));
+  outcome.diagnosis.parameters = {{"mass_kg", 50.0, 1.0}, {"valve_gain_m_per_V", 2e-5, 1e-7}};
+  EXPECT_THAT(verdict_words(outcome.diagnosis),
+              HasSubstr("free it with --prior valve_gain_m_per_V=none."));
 }
 
 TEST(Words, ExchangedColumnsThatTheSearchFoundComeWithTheirMap) {
@@ -412,7 +415,8 @@ TEST(Words, ACommandThatIsLoggedLateIsTakenEarlierByTheNextCommand) {
   outcome.diagnosis.checks->command_late_s = 0.05;
   EXPECT_EQ(next_command(outcome),
             "spoolwatch diagnose rig.toml bench.csv --advance 0.05 -o better.toml");
-  EXPECT_THAT(remarks(outcome), Contains(HasSubstr("logged 50 ms after it acts")));
+  EXPECT_THAT(remarks(outcome), testing::ElementsAre(HasSubstr("logged 50 ms after it acts")));
+  EXPECT_FALSE(outcome.has_better_model());
   outcome.input.reading.advance_command_s = 0.01;
   outcome.input.command = "spoolwatch diagnose rig.toml bench.csv --advance 0.01 --quiet";
   EXPECT_EQ(next_command(outcome),
