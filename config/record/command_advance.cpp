@@ -14,8 +14,9 @@
 namespace config::record {
 namespace {
 
-/// Error of a ratio of two times that were read as decimals.
-constexpr double kWhole_samples = 1e-6;
+/// A shift that far from a whole sample is one: times are stated to six digits, and the command's
+/// mean moves by a shift's own share of its step.
+constexpr double kWhole_samples = 1e-3;
 /// A record's least number of samples.
 constexpr std::size_t kFewest = 3;
 

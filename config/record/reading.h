@@ -19,7 +19,7 @@ struct ReadOptions {
   std::string map;       ///< key=column,...; or the name of a file with such pairs, one per line
   std::string resample;  ///< empty: not; "auto", or a rate in Hz: interpolate to an even grid
   bool flip_command = false;       ///< turn the command's sign
-  double advance_command_s = 0.0;  ///< the command acts earlier than logged by it; < 0: later
+  double advance_command_s = 0.0;  ///< time by which it acts before it is logged; < 0: after
   bool position_optional = false;  ///< a command alone will do
   std::string channel;             ///< LCM channel; empty: kSampleChannel
 

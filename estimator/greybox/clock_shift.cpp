@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Index;
 
-/// The response misses a shift by the plant's time constants.
+/// The response misses a shift by the plant's time constants: shifts as far from the best so far
+/// are compared.
 constexpr double kBeside_s = 0.03;
 constexpr Index kLeastBeside = 3;
 /// Positions so far apart show the speed; those of two samples may show the noise.
@@ -44,11 +45,10 @@ double command_late_samples(const Dataset& record, const std::vector<double>& sp
       std::max(Index{1}, static_cast<Index>(std::lround(kSpeedOver_s / record.sample_time_s)));
   const auto beside =
       std::max(kLeastBeside, static_cast<Index>(std::lround(kBeside_s / record.sample_time_s)));
-  const auto first = std::max(Index{1}, static_cast<Index>(std::lround(by_response)) - beside);
-  const Index last = static_cast<Index>(std::lround(by_response)) + beside;
   const Index samples = static_cast<Index>(span.end - span.begin) - width;
-  const Index compared = samples - last;
-  if (compared < kFewestCompared) return 0.0;
+  const Index farthest = samples - kFewestCompared;
+  Index best = std::max(Index{1}, static_cast<Index>(std::lround(by_response)));
+  if (best > farthest) return 0.0;
   Eigen::VectorXd measured_m(samples);
   Eigen::VectorXd modelled_mps = Eigen::VectorXd::Zero(samples);
   for (Index k = 0; k < samples; ++k) {
@@ -60,14 +60,22 @@ double command_late_samples(const Dataset& record, const std::vector<double>& sp
   }
   const auto left = [&](Index lag) {
     const double c =
-        motions_correlate(measured_m.head(compared), modelled_mps.segment(lag, compared));
+        motions_correlate(measured_m.head(samples - lag), modelled_mps.tail(samples - lag));
     return c > 0.0 ? 1.0 - c * c : 1.0;
   };
-  Index best = first;
-  for (Index lag = first; lag <= last; ++lag) {
-    if (left(lag) < left(best)) best = lag;
+  double least = left(best);
+  for (Index centre = 0; centre != best;) {
+    centre = best;
+    const Index last = std::min(centre + beside, farthest);
+    for (Index lag = std::max(Index{1}, centre - beside); lag <= last; ++lag) {
+      const double here = left(lag);
+      if (here < least) {
+        least = here;
+        best = lag;
+      }
+    }
   }
-  return left(best) < kShiftLeaves * left(0) ? static_cast<double>(best) : 0.0;
+  return least < kShiftLeaves * left(0) ? static_cast<double>(best) : 0.0;
 }
 
 }  // namespace estimator::greybox

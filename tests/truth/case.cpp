@@ -118,6 +118,13 @@ Kind kind_in(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> case_keys() {
+  std::vector<std::string> keys{"mismatched", "log_every", "log_mean"};
+  for (const auto& [name, member] : case_fields()) keys.push_back(name);
+  for (const auto& [name, member] : outside_fields()) keys.push_back(name);
+  return keys;
+}
+
 Case parse_case(const std::string& text, std::size_t seed) {
   Case of = typical_case(kind_in(text));
   of.seed = seed;

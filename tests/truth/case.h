@@ -21,6 +21,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tests/truth/kinds.h"
 #include "tests/truth/record.h"
@@ -30,6 +31,8 @@ namespace truth {
 
 /// Throws std::invalid_argument with the allowed words.
 Case parse_case(const std::string& text, std::size_t seed);
+/// Keys of a case beside rig, motion, plant, left_out, the plant's and the effects' own.
+std::vector<std::string> case_keys();
 /// The text from which parse_case makes the same case, whatever the seed's plant.
 std::string to_text(const Case& of);
 

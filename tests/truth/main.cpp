@@ -5,7 +5,7 @@
 //   spoolwatch-truth --plan PLAN --count N --seed S --out DIR [--jobs 2]
 //                                     case0001.csv ..., answers.json, and the model files that the
 //                                     records of another plant are to be diagnosed with (plan.h)
-//   spoolwatch-truth --list           plans, effects, parameters, motions and left-out effects
+//   spoolwatch-truth --list           plans, keys of a case, motions and left-out effects
 //
 // A record: 30 s at 200 Hz in closed loop (Kp 100 V/m), 12 bits over +-10 V, encoder 5 um, noise
 // 2 um, as t_s,u_V,y_m, where SPEC or plan say nothing else. The same seed and SPEC give the same
@@ -43,6 +43,7 @@ void list() {
   for (const truth::Parameter& parameter : truth::parameters()) {
     std::printf("%s.%s\n", parameter.effect.c_str(), parameter.name.c_str());
   }
+  for (const std::string& key : truth::case_keys()) std::printf("%s\n", key.c_str());
   for (const std::string& motion : truth::motions()) std::printf("motion=%s\n", motion.c_str());
   for (const auto* table :
        {&truth::left_out_table(), &truth::axis_left_out_table(), &truth::library_law_table()}) {

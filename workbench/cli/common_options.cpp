@@ -50,7 +50,7 @@ void add_reading(CLI::App& command, config::record::ReadOptions& reading) {
   command.add_flag("--flip", reading.flip_command, "turn the sign of the command");
   command
       .add_option("--advance", reading.advance_command_s,
-                  "s: take the command as much earlier than it is logged; below 0: later")
+                  "s: advance the command by this time; below 0 it is delayed")
       ->check(finite_number());
 }
 

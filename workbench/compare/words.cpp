@@ -22,6 +22,10 @@ namespace {
 
 /// A p value under this is not chance.
 constexpr double kSignificant = 1e-3;
+/// Least share of the motion that a model explains which follows it, and how far its size may be
+/// off.
+constexpr double kFollows = 0.8;
+constexpr double kOfTheSize = 0.5;
 /// Speed errors under this part of the rod's RMS speed are no drift worth a word.
 constexpr double kSlightDrift = 0.01;
 
@@ -195,9 +199,15 @@ void add_disturbance(const validation::Comparison& c,
                     "; `diagnose` weighs it against the effects of the library.");
 }
 
+/// True where the model follows the motion, at its size: no unit or column is mistaken.
+bool follows(const validation::Comparison& c) {
+  return c.floor_ratio() <= validation::kAtFloor ||
+         (c.motion.explained > kFollows && std::abs(c.motion.ratio - 1.0) < kOfTheSize);
+}
+
 /// A size that a unit may account for; empty where the model follows the record.
 std::string size_finding_of(const validation::Comparison& c) {
-  if (c.floor_ratio() <= validation::kAtFloor) return {};
+  if (follows(c)) return {};
   return present::size_finding(estimator::greybox::usual_range(c.record.y_m), c.stroke_m, c.motion,
                                c.record.command_column, c.record.position_column);
 }
@@ -205,7 +215,8 @@ std::string size_finding_of(const validation::Comparison& c) {
 /// True for a record of which a note asks whether it was read rightly: what the error looks like
 /// then says nothing of the model. A sign that is turned has words of its own.
 bool may_be_misread(const validation::Comparison& c) {
-  return c.response.columns_exchanged() || c.response.delay_s < 0.0 || !size_finding_of(c).empty();
+  return (c.response.columns_exchanged() && !follows(c)) || c.response.delay_s < 0.0 ||
+         !size_finding_of(c).empty();
 }
 
 }  // namespace
@@ -232,7 +243,7 @@ Words words(const validation::Comparison& c, const DisturbanceCheck& check) {
   }
   if (may_be_misread(c)) {
     w.judgement = Judgement::fails_throughout;
-    w.verdict = "Probably misread: read the record as the note says before the model is blamed.";
+    w.verdict = "Probably misread: correct the reading as the note says, then compare again.";
     add(size_words(c));
     return w;
   }

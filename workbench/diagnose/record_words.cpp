@@ -69,7 +69,7 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   }
   std::set<std::string> said;  // of a record's blocks, the first that shows something
   for (std::size_t i = 0; i < std::min(records.size(), checks.responses.size()); ++i) {
-    if (checks.turned_sign() || checks.command_late_s > 0.0) break;
+    if (checks.turned_sign() || checks.exchanged_ratio > 1.0 || checks.command_late_s > 0.0) break;
     if (checks.responses[i].columns_exchanged() && !checks.columns_exchanged) continue;
     if (said.contains(records[i].name) || is_explained(d, checks.responses[i])) continue;
     for (const std::string& text : present::response_findings(
@@ -78,10 +78,14 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
       said.insert(records[i].name);
     }
   }
+  // a span tells nothing where the positions as they are follow the command
+  const greybox::ValueRange range = checks.stroke_m > 0.0 || checks.wrong_scale
+                                        ? greybox::ValueRange{checks.low_m, checks.high_m}
+                                        : greybox::ValueRange{0.0, 0.0};
   const std::string size =
       records.empty()
           ? std::string()
-          : present::size_finding({checks.low_m, checks.high_m}, checks.stroke_m, checks.motion,
+          : present::size_finding(range, checks.stroke_m, checks.motion,
                                   records.front().command_column, records.front().position_column);
   if (!size.empty()) out.push_back(records.front().name + ": " + size + ".");
   if (checks.outside_stroke() && size.empty()) {

@@ -299,7 +299,7 @@ std::string title_of(const DiagnosisReport& outcome) {
 std::vector<present::Fact> facts_of(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<present::Fact> facts;
-  if (outcome.fitted()) {
+  if (outcome.has_better_model()) {
     facts.push_back(length_fact("Held-out error, file", d.nominal_rms_m));
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
     if (d.adds_to_file()) {
@@ -310,7 +310,7 @@ std::vector<present::Fact> facts_of(const DiagnosisReport& outcome) {
   }
   if (d.repetitions_set_floor()) facts.push_back(length_fact("Between repetitions", d.floor_m()));
   if (std::isfinite(d.noise_floor_m)) facts.push_back(length_fact("Noise floor", d.noise_floor_m));
-  if (outcome.fitted()) {
+  if (outcome.has_better_model()) {
     facts.push_back(length_fact("Free run, model file", outcome.free_run_before_m));
     facts.push_back(length_fact("Free run, better model", outcome.free_run_after_m));
   }
@@ -332,7 +332,7 @@ present::Report report_of(const DiagnosisReport& outcome) {
   report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);
   report.command = outcome.prepared->command;
-  if (outcome.fitted()) {
+  if (outcome.has_better_model()) {
     report.sections.push_back(falling_error_section(outcome));
     if (!d.search.rounds.empty()) report.sections.push_back(candidates_section(outcome));
     report.sections.push_back(parameters_section(outcome));

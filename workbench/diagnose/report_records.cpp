@@ -194,7 +194,7 @@ Section section_of(const RecordPage& page, bool fitted, const std::string& headi
 
 Residuals residuals_of(const DiagnosisReport& outcome) {
   Residuals all;
-  if (!outcome.fitted()) return all;
+  if (!outcome.has_better_model()) return all;
   const selection::Diagnosis& d = outcome.diagnosis;
   const selection::DiagnosisProblem& problem = outcome.prepared->problem;
   const selection::ModelStage& before =
@@ -234,12 +234,12 @@ std::vector<Section> record_sections(const DiagnosisReport& outcome) {
     for (Eigen::Index k = 0; k < all.free_deviated_m.cols(); ++k) {
       page.free_deviated_m.push_back(counted_part(all.free_deviated_m.col(k), start, record));
     }
-    if (outcome.fitted()) {
+    if (outcome.has_better_model()) {
       page.before = residual_source(all.before, record, page.before_m);
       page.after = residual_source(outcome.diagnosis.better, record, page.after_m);
     }
     const bool held_out = r >= outcome.prepared->records.size();
-    sections.push_back(section_of(page, outcome.fitted(),
+    sections.push_back(section_of(page, outcome.has_better_model(),
                                   (held_out ? "Held out: " : "Record ") + file_name(record.name)));
   }
   return sections;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/record/command_advance.h"
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
@@ -21,6 +22,14 @@
 
 namespace workbench::diagnose {
 namespace {
+
+/// True for a log of some of a loop's samples: the command changes between them.
+bool leaves_out_commands(const DiagnosisReport& outcome) {
+  const std::vector<estimator::greybox::Dataset>& records = outcome.prepared->problem.data.records;
+  return config::record::interpolates(outcome.diagnosis.command_lead_samples) ||
+         std::any_of(records.begin(), records.end(),
+                     [](const auto& record) { return record.command_is_interpolated; });
+}
 
 /// Why a diagnosis ended before everything was tried.
 std::string interruption_words(const DiagnosisReport& outcome) {
@@ -179,7 +188,11 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (d.disturbance) {
     out.push_back("What remains does not follow from command or motion: " +
-                  present::disturbance_words(*d.disturbance) + ".");
+                  present::disturbance_words(*d.disturbance) + "." +
+                  (leaves_out_commands(outcome)
+                       ? " The commands between the samples, which this log leaves out, act like "
+                         "that too: it need not be a disturbance of the rig."
+                       : ""));
   }
   if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));
   if (!d.possible.empty()) {

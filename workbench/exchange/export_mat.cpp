@@ -226,7 +226,7 @@ std::string mat_file(const std::string& input, const Kinds& kinds,
   others.erase("sample");
   read_log(input, others, collector);
   if (kinds.contains("sample") && !std::isnan(period_s)) {
-    write_record(config::record::read_record(input), writer);
+    write_record(config::record::read_record(input, reading), writer);
   }
   collector.write(writer);
   return writer.finish();

@@ -290,7 +290,8 @@ IsolationReport isolate(const IsolationRequest& request) {
   out.settings = request.settings;
   out.notes = record.notes;
   const bool own_record = !request.healthy_record.empty();
-  const Record apart = own_record ? config::record::read_record(request.healthy_record) : Record{};
+  const Record apart =
+      own_record ? config::record::read_record(request.healthy_record, request.reading) : Record{};
   const Record& healthy = own_record ? apart : record;
   if (own_record) check_healthy(request, healthy, record);
   const Readings readings = readings_of(record, request);

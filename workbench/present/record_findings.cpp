@@ -112,7 +112,7 @@ std::vector<std::string> size_findings(const config::record::Record& record) {
 }
 
 std::string advance_words(double s) {
-  return fmt::format("--advance {:.4g} takes the command {}", s, s > 0.0 ? "earlier" : "later");
+  return fmt::format("--advance {:.6g} takes the command {}", s, s > 0.0 ? "earlier" : "later");
 }
 
 }  // namespace

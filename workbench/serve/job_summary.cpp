@@ -91,7 +91,7 @@ ordered_json summary_of(const diagnose::DiagnosisReport& report) {
   out["verdict"] = selection::to_string(d.verdict);
   out["remarks"] = typeset_all(diagnose::remarks(report));
   out["steps"] = ordered_json::array();
-  if (report.fitted()) {
+  if (report.has_better_model()) {
     for (const diagnose::StepWords& step : diagnose::step_words(d)) {
       out["steps"].push_back({{"what", step.what},
                               {"heldout_m", number_or_null(step.rms_m)},

@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::array kLeads_samples = {1.0 / 4.0, 1.0 / 3.0, 3.0 / 8.0, 9.0 / 20.0,
                                        1.0 / 2.0, 1.0,       3.0 / 2.0, 2.0};
-/// Share of the error that may remain with a lead: a valve faster than expected gains less.
-constexpr double kMuchLess = 0.6;
 /// Sample time from which on a floor may hide the error of a held command.
 constexpr double kSlow_s = 0.015;
 constexpr int kLeadIterations = 10;
 /// Iterations after which a lead must leave less than none does to be fitted further.
 constexpr int kLeadFirstIterations = 2;
 constexpr double kLeadTolerance = 1e-3;
+/// Samples for which an interpolated command errs alike.
+constexpr double kCorrelated_samples = 4.0;
 
 /// True where the model as given leaves more with the lead than without.
 bool leaves_more(const SearchContext& context, const ModelStage& first, double lead_samples) {
@@ -77,11 +77,18 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& fi
   fit_lead(0);
   if (!(fits[0].training_rms_m < stage.fitted.training_rms_m)) return {};
   in_parallel(fits.size() - 1, context.options.threads, [&](std::size_t i) { fit_lead(i + 1); });
-  const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
-    return a.training_rms_m < b.training_rms_m || std::isnan(b.training_rms_m);
+  // the plant's own time constants make up for much of a lead, at odds with the file
+  const double independent = context.problem.data.training_mask.sum() / kCorrelated_samples;
+  const auto cost_nats = [&](const FitSummary& fitted) {
+    const double rms_m = fitted.training_rms_m;
+    return std::isnan(rms_m) ? std::numeric_limits<double>::infinity()
+                             : independent * std::log(rms_m) + 0.5 * prior_cost(fitted);
+  };
+  const auto best = std::min_element(fits.begin(), fits.end(), [&](const auto& a, const auto& b) {
+    return cost_nats(a) < cost_nats(b);
   });
-  if (context.cancelled() || !(best->training_rms_m < kMuchLess * stage.fitted.training_rms_m) ||
-      !(best->validation_rms_m < kMuchLess * stage.fitted.validation_rms_m)) {
+  if (context.cancelled() || !(best->training_rms_m < kLeadLeaves * stage.fitted.training_rms_m) ||
+      !(best->validation_rms_m < kLeadLeaves * stage.fitted.validation_rms_m)) {
     return {};
   }
   const double lead_samples = kLeads_samples[static_cast<std::size_t>(best - fits.begin())];
@@ -94,6 +101,8 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& fi
 CommandLead find_command_lead(const SearchContext& context, const SearchStart& start) {
   const SearchBranch& branch = start.branch;
   CommandLead lead = find_command_lead(context, start.first, branch.stage);
+  if (!(lead.samples > 0.0) && !branch.stage.added.empty() && !context.cancelled())
+    lead = find_command_lead(context, start.first, start.first);
   if (branch.rounds.empty()) return lead;
   const std::vector<Candidate>& candidates = branch.rounds.front().candidates;
   double least_m = std::numeric_limits<double>::infinity();

@@ -15,6 +15,9 @@ struct SearchStart;
 /// Each record's command, shifted earlier by a number of samples; each segment by itself.
 void advance_command(FitDataset& data, double lead_samples);
 
+/// Share of the error that may remain with a lead: a valve faster than expected gains less.
+inline constexpr double kLeadLeaves = 0.6;
+
 struct CommandLead {
   double samples = 0.0;    ///< 0: as logged
   double gain_nats = 0.0;  ///< the interpolation gains it; 0 for whole samples
@@ -26,8 +29,9 @@ struct CommandLead {
 [[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& first,
                                             const ModelStage& stage);
 
-/// The same beside the effects that a search has begun with, or beside one of its first round that
-/// leaves as little: without the lead, others stand in for the effect that shows it.
+/// The same beside the effects that a search has begun with, without any, or beside one of its
+/// first round that leaves as little: without the lead, others stand in for the effect that shows
+/// it.
 [[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const SearchStart& start);
 
 /// True where the noise floor is low enough to show an interpolated command: that of a slow log,

@@ -6,22 +6,20 @@
 #include <utility>
 
 #include "estimator/greybox/representative_segments.h"
-#include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/explained_beyond_effects.h"
-#include "estimator/greybox/selection/file_values.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/other_readings.h"
 #include "estimator/greybox/selection/record_differences.h"
 #include "estimator/greybox/selection/screening_memo.h"
+#include "estimator/greybox/selection/search_beginning.h"
 #include "estimator/greybox/selection/settled_memo.h"
-#include "estimator/greybox/selection/spectral_line_candidates.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -36,9 +34,6 @@ constexpr double kClearlyWorse = 0.25;
 constexpr double kSlowDisturbance = 0.6;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
-
-/// Share of the error from which on another beginning of the search leaves far less.
-constexpr double kFarLess = 0.5;
 
 constexpr const char* kTransportDelay = "transport_delay";
 constexpr const char* kDelay = "transport_delay.delay_s";
@@ -201,72 +196,6 @@ bool leaves_noise(const SearchContext& context, const ModelStage& stage) {
     if (!search.physics_missing()) return !can_do_without_one(context, search.final);
   }
   return false;
-}
-
-/// True where a spectral line explains more of what a search leaves than any curve does.
-bool leaves_a_line(const SearchContext& context, const InnovationSearch& search) {
-  const std::vector<ScoredLine> lines = line_candidates(context, search.final);
-  return !lines.empty() && lines.front().gain_nats > search.curve_nats;
-}
-
-/// True where the stage leaves more than a disturbance or a line, of which simulations know
-/// nothing.
-bool leaves_physics_to_simulations(const SearchContext& context, const ModelStage& stage) {
-  if (is_explained(context, stage) || context.cancelled()) return false;
-  const SearchContext fitted = without_holdouts(context);
-  InnovationSearch left;
-  left.final = settled(fitted, stage, {}, Settling::once, wide(context.options.threads));
-  if (!std::isfinite(left.final.minus_two_log)) return true;
-  weigh_remainder(fitted, left);
-  return left.physics_missing() && !leaves_a_line(fitted, left);
-}
-
-/// Adds a second effect where the first leaves more.
-void continue_search(const SearchContext& context, SearchStart& start) {
-  const SearchBranch& branch = start.branch;
-  if (branch.stage.added.size() == 1 && !branch.stalled &&
-      leaves_physics_to_simulations(context, branch.stage)) {
-    add_second_effect(context, start);
-  }
-}
-
-SearchStart begin_search(const SearchContext& context) {
-  SearchStart start = start_search(context);
-  continue_search(context, start);
-  return start;
-}
-
-/// Searches again with the command earlier where that leaves much less. Returns the lead in
-/// samples, 0 for none.
-double take_command_lead(SearchContext& context, SearchContext& search, SearchStart& start) {
-  if (is_explained(search, start.branch.stage) && floor_shows_lead(search.problem.data)) return 0.0;
-  const CommandLead lead = find_command_lead(search, start);
-  if (!(lead.samples > 0.0) || context.cancelled()) return 0.0;
-  advance_command(context.problem.data, lead.samples);
-  context.problem.interpolated_nats = lead.gain_nats;
-  search = for_search(context);
-  start = begin_search(search);
-  return lead.samples;
-}
-
-/// Searches again with wider ranges where the file's values strain and that leaves far less, or
-/// noise; true where the problem has changed.
-bool widen_file_values(const SearchContext& search, SearchStart& start, DiagnosisProblem& problem) {
-  DiagnosisProblem widened = problem;
-  if (search.cancelled() || is_explained(search, start.branch.stage) ||
-      !widen_strained(start.first, widened)) {
-    return false;
-  }
-  const SearchContext wider = for_search({widened, search.options, search.memo, search.screenings});
-  SearchStart other = begin_search(wider);
-  const ModelStage& stage = other.branch.stage;
-  if (!is_explained(wider, stage) &&
-      !(stage.fitted.validation_rms_m < kFarLess * start.branch.stage.fitted.validation_rms_m)) {
-    return false;
-  }
-  start = std::move(other);
-  problem = std::move(widened);
-  return true;
 }
 
 /// Dates a drift that leaves far less than the effects found so far, and far from the noise.

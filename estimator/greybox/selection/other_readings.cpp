@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "estimator/greybox/motion_scale.h"
@@ -12,7 +13,7 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// What one reading leaves must be that many times what the other does.
+/// Least ratio of the errors that two readings leave.
 constexpr double kMuchMore = 3.0;
 constexpr double kThousand = 1000.0;
 
@@ -29,11 +30,14 @@ double motion_m(const FitDataset& data) {
   return std::sqrt(squares / samples);
 }
 
-/// Error of the first round of a search, of the motion that there is to be explained.
+/// Error of the first round of a search, of the motion that there is to be explained; infinite for
+/// a simulation that leaves all bounds.
 double left_ratio(const SearchContext& context, const SearchStart& start) {
-  return start.branch.stage.fitted.validation_rms_m / motion_m(context.problem.data);
+  const double ratio = start.branch.stage.fitted.validation_rms_m / motion_m(context.problem.data);
+  return std::isfinite(ratio) ? ratio : std::numeric_limits<double>::infinity();
 }
 
+/// The same of the records read otherwise, split into blocks.
 template <class Reading>
 double left_by(const SearchContext& context, const Reading& read) {
   SearchContext other = without_holdouts(context);
@@ -53,11 +57,18 @@ void try_other_readings(const SearchContext& context, const SearchStart& start,
                                   [](const CommandResponse& r) { return r.with_command(); });
   const bool has_stroke = checks.stroke_m > 0.0;  // which tells by itself
   const double left = left_ratio(context, start);
-  if (!has_stroke && checks.high_m - checks.low_m > kLongest_m) {
+  if (!std::isfinite(left)) return;
+  // held-out records may move less than those that `read` is tried on
+  const auto leaves_much_less = [&](double other) {
+    return !context.cancelled() && kMuchMore * other < left &&
+           kMuchMore * other < left_by(
+                                   context, [](Dataset&) {});
+  };
+  if (!has_stroke && !context.problem.model.rotary() && checks.high_m - checks.low_m > kLongest_m) {
     const double scaled = left_by(context, [](Dataset& record) {
       for (double& y_m : record.y_m) y_m /= kThousand;
     });
-    checks.wrong_scale = !context.cancelled() && kMuchMore * scaled < left;
+    checks.wrong_scale = leaves_much_less(scaled);
   }
   if (driven || checks.wrong_scale) return;
   const double turned = left_by(context, [](Dataset& record) {
@@ -66,7 +77,7 @@ void try_other_readings(const SearchContext& context, const SearchStart& start,
   const double exchanged =
       has_stroke ? left
                  : left_by(context, [](Dataset& record) { std::swap(record.u_V, record.y_m); });
-  if (context.cancelled() || !(kMuchMore * std::min(turned, exchanged) < left)) return;
+  if (!leaves_much_less(std::min(turned, exchanged))) return;
   if (turned <= exchanged) {
     checks.turned_sign_ratio = left / turned;
   } else {

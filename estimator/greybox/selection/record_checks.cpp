@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "estimator/greybox/clock_shift.h"
@@ -25,6 +27,8 @@ constexpr double kTurned = 3.0;
 constexpr double kLeastShift_samples = 1.5;
 /// Shifts up to this are among those that a search tries (command_lead.h).
 constexpr double kMostLead_samples = 2.0;
+/// Difference of the shifts of two recordings whose clocks are shifted alike.
+constexpr double kAlike_samples = 1.5;
 
 /// Enough to distinguish plants, and signs.
 constexpr int kCheckIterations = 12;
@@ -164,19 +168,35 @@ GivenMotion motion_of(const plant_sim::ModelFile& model, const Dataset& record) 
           residual_m.norm() / std::sqrt(static_cast<double>(residual_m.rows())), run.speed_mps()};
 }
 
-/// RecordChecks::command_late_s, by the record whose response shows most.
-double command_late_s(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
-                      const std::vector<CommandResponse>& responses) {
-  std::size_t most = 0;
-  for (std::size_t i = 1; i < responses.size(); ++i) {
-    if (responses[i].delay_s < responses[most].delay_s) most = i;
-  }
-  const Dataset& record = records[most];
-  const double by_response = -responses[most].delay_s / record.sample_time_s;
+/// Time by which the command of a record is logged after it acts, beyond the leads that a search
+/// tries.
+double command_late_s(const plant_sim::ModelFile& model, const Dataset& record,
+                      const CommandResponse& response) {
+  const double by_response = -response.delay_s / record.sample_time_s;
   if (!(by_response >= kLeastShift_samples)) return 0.0;
   const std::vector<double> speed_mps = motion_of(model, record).speed_mps;
   const double late_samples = command_late_samples(record, speed_mps, by_response);
   return late_samples > kMostLead_samples ? late_samples * record.sample_time_s : 0.0;
+}
+
+/// RecordChecks::command_late_s: that of every recording, of whose blocks the earliest response
+/// counts.
+double command_late_s(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
+                      const std::vector<CommandResponse>& responses) {
+  std::map<std::string, std::size_t> earliest;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const auto [at, first] = earliest.emplace(records[i].name, i);
+    if (!first && responses[i].delay_s < responses[at->second].delay_s) at->second = i;
+  }
+  double least_s = std::numeric_limits<double>::infinity();
+  double most_s = 0.0;
+  for (const auto& [name, i] : earliest) {
+    const double late_s = command_late_s(model, records[i], responses[i]);
+    least_s = std::min(least_s, late_s);
+    most_s = std::max(most_s, late_s);
+    if (most_s - least_s > kAlike_samples * records[i].sample_time_s) return 0.0;
+  }
+  return least_s;
 }
 
 }  // namespace

@@ -33,8 +33,9 @@ struct RecordChecks {
   std::vector<CommandResponse> responses;  ///< one per record
   MotionRatio motion;                      ///< first record, by the model as given
   /// The motion is about 1000 times the model's, or a thousandth, or the positions span far more
-  /// than the stroke, as millimetres taken for metres do, and no fit makes up for it; or they span
-  /// more than any stand, and effects leave much less of the motion divided by 1000.
+  /// than the stroke, as millimetres taken for metres do, and no fit makes up for it; or, on a
+  /// linear axis, they span more than any stand, and effects leave much less of the motion divided
+  /// by 1000.
   bool wrong_scale = false;
   /// Command and position of a record are exchanged, by their response, and the model does not
   /// follow them as they are.
@@ -42,8 +43,8 @@ struct RecordChecks {
   /// Exchanged, effects leave that many times less of the motion; 1: they do not, or the response
   /// tells (other_readings.h).
   double exchanged_ratio = 1.0;
-  /// The command is logged after it acts, by the response and the model's motion; 0: it is not, or
-  /// by no more than a search for effects tries.
+  /// The command of every record is logged that much after it acts, by the response and the model's
+  /// motion; 0: it is not, or by no more than a search for effects tries.
   double command_late_s = 0.0;
 
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }

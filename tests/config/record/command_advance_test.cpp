@@ -81,6 +81,9 @@ TEST(CommandAdvance, IsNotInterpolatedWhereDecimalsMissASampleByRounding) {
   EXPECT_FALSE(interpolates(0.05 / 0.005));
   EXPECT_FALSE(interpolates(-0.15 / 0.005));
   EXPECT_TRUE(interpolates(0.001 / 0.005));
+  // as six digits state 8 samples at 150 Hz and 1 at 60 Hz
+  EXPECT_FALSE(interpolates(0.0533333 * 150.0));
+  EXPECT_FALSE(interpolates(0.0166667 * 60.0));
 }
 
 TEST(CommandAdvance, FlipTurnsTheCommandAlone) {

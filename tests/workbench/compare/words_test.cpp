@@ -19,6 +19,7 @@ using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 validation::Comparison compared(const compare_test::Fault& fault) {
@@ -81,6 +82,16 @@ TEST(Words, NameAFactorOfAThousandAndAShiftedClock) {
       validation::compare(compare_test::servo(), greybox::dataset_of(early));
   EXPECT_THAT(notes(shifted), Contains(HasSubstr("before the command that drives it")));
   EXPECT_THAT(words(shifted).verdict, StartsWith("Probably misread"));
+}
+
+TEST(Words, DoNotAskForTheUnitOfALongAxisThatTheModelFollows) {
+  validation::Comparison c = compared([](double, double u, double) { return -0.03 * kGain * u; });
+  for (double& y_m : c.record.y_m) y_m *= 1000.0;
+  c.stroke_m = 0.0;
+  EXPECT_THAT(words(c).verdict, HasSubstr("less than the model"));
+  EXPECT_THAT(notes(c), Not(Contains(HasSubstr("more than a stand's stroke"))));
+  c.motion.ratio = 1000.0;
+  EXPECT_THAT(words(c).verdict, StartsWith("Probably misread"));
 }
 
 TEST(Words, NameTheRangeThatFails) {

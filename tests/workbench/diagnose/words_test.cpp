@@ -306,6 +306,17 @@ TEST(Words, NextCommandTakesTheCommandAsMuchEarlierAsTheBetterModelDoes) {
   EXPECT_EQ(next_command(outcome), "spoolwatch compare better.toml bench.csv --advance 0.0225");
 }
 
+TEST(Words, CommandsThatTheLogLeavesOutAreNoDisturbanceOfTheRig) {
+  ExampleReport outcome;
+  outcome.diagnosis.disturbance = selection::Disturbance{};
+  const auto said = HasSubstr("it need not be a disturbance of the rig");
+  EXPECT_THAT(remarks(outcome), Not(Contains(said)));
+  outcome.diagnosis.command_lead_samples = 1.0;
+  EXPECT_THAT(remarks(outcome), Not(Contains(said))) << "two clocks; none is left out";
+  outcome.diagnosis.command_lead_samples = 0.25;
+  EXPECT_THAT(remarks(outcome), Contains(said));
+}
+
 TEST(Words, NextCommandTurnsATurnedSign) {
   ExampleReport outcome;
   outcome.diagnosis.checks.emplace();
@@ -406,6 +417,9 @@ TEST(Words, ExchangedColumnsThatTheSearchFoundComeWithTheirMap) {
   EXPECT_THAT(remarks(outcome),
               Contains(HasSubstr("40.0 times less of the motion remains; read them "
                                  "with --map u=Pos,y=Force.")));
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  outcome.diagnosis.checks->responses = {{-0.8, 0.0, 0.5}};
+  EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("--flip")))) << "one way to read it";
 }
 
 TEST(Words, ACommandThatIsLoggedLateIsTakenEarlierByTheNextCommand) {

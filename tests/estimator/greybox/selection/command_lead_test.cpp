@@ -70,6 +70,18 @@ TEST(CommandLead, ALogOfEveryOtherSampleIsAQuarterOfASampleOff) {
   EXPECT_EQ(lead_of(thinned(record(), 2)), 0.25);
 }
 
+// With another valve and another mass 1/3 of a sample leaves as little as the 1/4 that it is.
+TEST(CommandLead, OfLeadsThatLeaveAsLittleTheOneNearTheFileIsTaken) {
+  for (const std::size_t seed : {62, 63, 64}) {
+    const Dataset whole = dataset_of(truth::simulate(truth::parse_case("motion=multisine", seed)));
+    EXPECT_EQ(lead_of(thinned(whole, 2)), 0.25) << seed;
+    EXPECT_NEAR(lead_of(thinned(whole, 3)), 1.0 / 3.0, 1e-12) << seed;
+    const Dataset off =
+        dataset_of(truth::simulate(truth::parse_case("motion=multisine,mismatched=1", seed)));
+    EXPECT_EQ(lead_of(thinned(off, 2)), 0.25) << seed;
+  }
+}
+
 TEST(CommandLead, CommandsLoggedOneSampleLateAreNoticed) {
   Dataset late = record();
   std::copy_backward(late.u_V.begin(), late.u_V.end() - 1, late.u_V.end());

@@ -106,6 +106,23 @@ TEST(RecordChecks, ACommandThatIsLoggedLateIsNoticedToTheSample) {
   EXPECT_EQ(checked(whole).command_late_s, 0.0);
 }
 
+TEST(RecordChecks, OneOfTwoRecordingsWhoseCommandIsLoggedLateDoesNotShiftBoth) {
+  Dataset good = record();
+  good.name = "good.csv";
+  Dataset late = command_late(good, 8);
+  late.name = "late.csv";
+  const auto late_s = [](const Dataset& one, const Dataset& other) {
+    SearchContext context = context_with(one);
+    context.problem.data = fit_dataset({one, other}, {});
+    return check_records(context, first_stage(context).fitted.validation_rms_m).command_late_s;
+  };
+  EXPECT_EQ(late_s(good, late), 0.0);
+  EXPECT_EQ(late_s(late, good), 0.0);
+  Dataset other_late = late;
+  other_late.name = "other.csv";
+  EXPECT_NEAR(late_s(late, other_late), 8.0 * good.sample_time_s, 1e-12);
+}
+
 // An offset makes the model drift by far more than the shift changes its error.
 TEST(RecordChecks, ACommandThatIsLoggedLateIsNoticedBesideAnEffect) {
   const Dataset whole = dataset_of(truth::simulate(
