@@ -51,6 +51,14 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
         config::units::times_words(checks.turned_sign_ratio),
         outcome.prepared->reading.flip_command ? "out" : ""));
   }
+  if (checks.position_turned) {
+    const std::string map = present::turning_map(records.front().position_column);
+    out.push_back(
+        "The sign of the position is turned: it moves against the command, and lies within the "
+        "model's stroke with the other sign" +
+        (map.empty() ? std::string() : "; read it with " + map) + ".");
+    return;
+  }
   if (checks.exchanged_ratio > 1.0) {
     const std::string map =
         present::exchanging_map(records.front().command_column, records.front().position_column);

@@ -53,9 +53,9 @@ std::string name_of(const SourceColumn& column) {
   return name.empty() ? header : name;
 }
 
-/// "--map y=Position", with the unit where the header does not name it.
-std::string unturning_map(const SourceColumn& position) {
-  std::string value = name_of(position);
+/// "--map y=Position" or y=-Position, with the unit where the header does not name it.
+std::string signed_map(const char* sign, const SourceColumn& position) {
+  std::string value = sign + name_of(position);
   if (config::record::parse_header(position.header).unit.text != position.unit) {
     value += "[" + position.unit + "]";
   }
@@ -117,6 +117,11 @@ std::string advance_words(double s) {
 
 }  // namespace
 
+std::string turning_map(const SourceColumn& position) {
+  if (position.header.empty()) return {};
+  return signed_map(position.turned ? "" : "-", position);
+}
+
 std::string exchanging_map(const SourceColumn& command, const SourceColumn& position) {
   if (command.header.empty() || position.header.empty()) return {};
   return map_words("u", name_of(position) + ",y=" + name_of(command));
@@ -142,7 +147,7 @@ std::vector<std::string> response_findings(const greybox::CommandResponse& respo
         response.correlation, config::units::axis_words("extends"));
     // turned, a position leaves the stroke, unless a mapping has turned it before
     const bool back = position.turned && !position.header.empty();
-    out.push_back(text + "; " + (back ? unturning_map(position) : "--flip turns the command"));
+    out.push_back(text + "; " + (back ? signed_map("", position) : "--flip turns the command"));
   }
   const std::string time = config::units::words(
       config::units::quantity("delay_s", std::abs(response.delay_s), std::nan("")));

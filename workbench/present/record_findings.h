@@ -19,6 +19,9 @@ namespace greybox = estimator::greybox;
                                                          const greybox::SourceColumn& command,
                                                          const greybox::SourceColumn& position);
 
+/// "--map y=-Position"; empty: the file has no headers.
+[[nodiscard]] std::string turning_map(const greybox::SourceColumn& position);
+
 /// "--map u=Position,y=Command"; empty: the file has no headers.
 [[nodiscard]] std::string exchanging_map(const greybox::SourceColumn& command,
                                          const greybox::SourceColumn& position);

@@ -219,6 +219,11 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
     checks.responses.push_back(
         command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
   }
+  checks.position_turned =
+      excess.below_m < 0.0 && checks.high_m <= 0.0 && -checks.low_m <= checks.stroke_m &&
+      std::all_of(checks.responses.begin(), checks.responses.end(),
+                  [](const CommandResponse& r) { return r.against_command(); });
+  if (checks.position_turned) return checks;
   const GivenMotion given = motion_of(model, data.records.front());
   checks.motion = given.ratio;
   const bool outsized =

@@ -31,7 +31,9 @@ struct RecordChecks {
   double low_m = 0.0;     ///< range of all positions
   double high_m = 0.0;
   std::vector<CommandResponse> responses;  ///< one per record
-  MotionRatio motion;                      ///< first record, by the model as given
+  /// Positions outside the stroke that move against the command, and lie within it when turned.
+  bool position_turned = false;
+  MotionRatio motion;  ///< first record, by the model as given
   /// The motion is about 1000 times the model's, or a thousandth, or the positions span far more
   /// than the stroke, as millimetres taken for metres do, and no fit makes up for it; or, on a
   /// linear axis, they span more than any stand, and effects leave much less of the motion divided
@@ -50,7 +52,8 @@ struct RecordChecks {
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
   /// True for a record that has to be read differently before any effect is sought.
   [[nodiscard]] bool misread() const {
-    return turned_sign() || wrong_scale || columns_exchanged || command_late_s > 0.0;
+    return turned_sign() || position_turned || wrong_scale || columns_exchanged ||
+           command_late_s > 0.0;
   }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }
 };

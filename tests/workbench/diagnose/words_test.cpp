@@ -422,6 +422,19 @@ TEST(Words, ExchangedColumnsThatTheSearchFoundComeWithTheirMap) {
   EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("--flip")))) << "one way to read it";
 }
 
+TEST(Words, ATurnedPositionComesWithItsMap) {
+  ExampleReport outcome;
+  greybox::Dataset record;
+  record.position_column = {"Pos [m]", "m", false};
+  outcome.input.problem.data.records = {record};
+  outcome.diagnosis.verdict = selection::Verdict::unexplained;
+  outcome.diagnosis.checks.emplace();
+  outcome.diagnosis.checks->position_turned = true;
+  outcome.diagnosis.checks->responses = {{-0.8, 0.0, 0.0}};
+  EXPECT_THAT(remarks(outcome), testing::ElementsAre(HasSubstr("read it with --map y=-Pos.")));
+  EXPECT_EQ(next_command(outcome), "");
+}
+
 TEST(Words, ACommandThatIsLoggedLateIsTakenEarlierByTheNextCommand) {
   ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::unexplained;

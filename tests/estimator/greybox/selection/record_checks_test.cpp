@@ -38,6 +38,15 @@ TEST(RecordChecks, ATurnedCommandIsNoticed) {
   EXPECT_FALSE(checked(record()).turned_sign());
 }
 
+TEST(RecordChecks, APositionThatLiesWithinTheStrokeWhenTurnedIsNoticed) {
+  Dataset turned = record();
+  for (double& y_m : turned.y_m) y_m = -y_m;
+  EXPECT_TRUE(checked(turned).position_turned);
+  EXPECT_TRUE(checked(turned).misread());
+  for (double& u_V : turned.u_V) u_V = -u_V;
+  EXPECT_FALSE(checked(turned).position_turned) << "the zero of a sensor that follows the command";
+}
+
 TEST(RecordChecks, APositionOutsideTheStrokeIsNoticed) {
   Dataset off = record();
   for (double& y_m : off.y_m) y_m -= 0.305;
