@@ -14,8 +14,7 @@
 namespace config::record {
 namespace {
 
-/// A shift that far from a whole sample is one: times are stated to six digits, and the command's
-/// mean moves by a shift's own share of its step.
+/// Tolerance within which a shift counts as whole: times are stated to six digits.
 constexpr double kWhole_samples = 1e-3;
 /// A record's least number of samples.
 constexpr std::size_t kFewest = 3;

@@ -71,6 +71,13 @@ void append_pairs(std::string_view line, const std::string& where, std::vector<M
 
 }  // namespace
 
+void require_as_logged(const ReadOptions& options, const std::string& log) {
+  if (!options.given()) return;
+  throw UsageError(log +
+                   ": --map, --resample, --flip, --advance: are for records, not for the messages "
+                   "of an LCM log");
+}
+
 std::vector<MapEntry> parse_map(const std::string& map) {
   std::vector<MapEntry> pairs;
   if (map.empty()) return pairs;

@@ -19,7 +19,7 @@ struct ReadOptions {
   std::string map;       ///< key=column,...; or the name of a file with such pairs, one per line
   std::string resample;  ///< empty: not; "auto", or a rate in Hz: interpolate to an even grid
   bool flip_command = false;       ///< turn the command's sign
-  double advance_command_s = 0.0;  ///< time by which it acts before it is logged; < 0: after
+  double advance_command_s = 0.0;  ///< lead of the command over its log
   bool position_optional = false;  ///< a command alone will do
   std::string channel;             ///< LCM channel; empty: kSampleChannel
 
@@ -28,6 +28,9 @@ struct ReadOptions {
     return !map.empty() || !resample.empty() || flip_command || advance_command_s != 0.0;
   }
 };
+
+/// Throws schema::UsageError where options are given that the messages of an LCM log cannot follow.
+void require_as_logged(const ReadOptions& options, const std::string& log);
 
 struct MapEntry {
   std::string key;     ///< "t", "u", "y", "supply_pressure"

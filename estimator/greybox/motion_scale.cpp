@@ -84,4 +84,8 @@ ScaleError scale_error(double low_m, double high_m, double stroke_m) noexcept {
   return tiny ? ScaleError::thousandth : ScaleError::none;
 }
 
+bool lies_turned(double low_m, double high_m, double stroke_m) noexcept {
+  return stroke_m > 0.0 && low_m < 0.0 && high_m <= 0.0 && -low_m <= stroke_m;
+}
+
 }  // namespace estimator::greybox

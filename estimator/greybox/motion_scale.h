@@ -42,4 +42,7 @@ struct ValueRange {
 /// a thousandth of it.
 [[nodiscard]] ScaleError scale_error(double low_m, double high_m, double stroke_m) noexcept;
 
+/// Positions outside a stroke that lie within it with the other sign.
+[[nodiscard]] bool lies_turned(double low_m, double high_m, double stroke_m) noexcept;
+
 }  // namespace estimator::greybox

@@ -212,11 +212,17 @@ std::string size_finding_of(const validation::Comparison& c) {
                                c.record.command_column, c.record.position_column);
 }
 
+/// True for a position that moves against the command and lies within the stroke only when turned.
+bool is_turned(const validation::Comparison& c) {
+  const auto [low_m, high_m] = estimator::greybox::usual_range(c.record.y_m);
+  return c.response.against_command() && estimator::greybox::lies_turned(low_m, high_m, c.stroke_m);
+}
+
 /// True for a record of which a note asks whether it was read rightly: what the error looks like
-/// then says nothing of the model. A sign that is turned has words of its own.
+/// then says nothing of the model. A sign that is turned within the stroke has words of its own.
 bool may_be_misread(const validation::Comparison& c) {
   return (c.response.columns_exchanged() && !follows(c)) || c.response.delay_s < 0.0 ||
-         !size_finding_of(c).empty();
+         is_turned(c) || !size_finding_of(c).empty();
 }
 
 }  // namespace
@@ -303,6 +309,10 @@ std::vector<std::string> notes(const validation::Comparison& c) {
           fmt::format("the command is at its limit of +-{:.4g} V in {:.0f} % of the samples",
                       c.command.most_V, percent));
       break;
+  }
+  if (is_turned(c)) {
+    out.push_back(present::turned_position_finding(c.record.position_column));
+    return out;
   }
   const std::string size = size_finding_of(c);
   if (!size.empty()) out.push_back(size);

@@ -178,13 +178,14 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"explained_ratio", number_or_null(where.explained_ratio)},
                              {"or_class", where.or_sites}});
   }
-  json["record"] = {
-      {"turned_sign", d.checks && (d.checks->turned_sign() || d.checks->position_turned)},
-      {"wrong_scale", d.checks && d.checks->wrong_scale},
-      {"columns_exchanged", d.checks && d.checks->columns_exchanged},
-      {"command_late_s", d.checks ? d.checks->command_late_s : 0.0},
-      {"outside_stroke", d.checks && d.checks->outside_stroke()},
-      {"command_lead_samples", d.command_lead_samples}};
+  json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
+                    {"position_turned", d.checks && d.checks->position_turned},
+                    {"records_differ", d.checks && d.checks->records_differ},
+                    {"wrong_scale", d.checks && d.checks->wrong_scale},
+                    {"columns_exchanged", d.checks && d.checks->columns_exchanged},
+                    {"command_late_s", d.checks ? d.checks->command_late_s : 0.0},
+                    {"outside_stroke", d.checks && d.checks->outside_stroke()},
+                    {"command_lead_samples", d.command_lead_samples}};
   json["plants"] = ordered_json::array();
   for (const selection::PlantFit& fit : d.plants) {
     ordered_json values = ordered_json::object();

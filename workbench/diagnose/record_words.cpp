@@ -45,18 +45,15 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
   const selection::RecordChecks& checks = *d.checks;
   const std::vector<greybox::Dataset>& records = outcome.prepared->problem.data.records;
   if (checks.turned_sign()) {
-    out.push_back(fmt::format(
-        "The sign of the command is turned: with -u {} times less of the motion remains. Diagnose "
-        "again with{} --flip.",
-        config::units::times_words(checks.turned_sign_ratio),
-        outcome.prepared->reading.flip_command ? "out" : ""));
+    out.push_back(
+        fmt::format("The sign of command or position is turned: with -u {} times less of the "
+                    "motion remains. Diagnose "
+                    "again with{} --flip.",
+                    config::units::times_words(checks.turned_sign_ratio),
+                    outcome.prepared->reading.flip_command ? "out" : ""));
   }
   if (checks.position_turned) {
-    const std::string map = present::turning_map(records.front().position_column);
-    out.push_back(
-        "The sign of the position is turned: it moves against the command, and lies within the "
-        "model's stroke with the other sign" +
-        (map.empty() ? std::string() : "; read it with " + map) + ".");
+    out.push_back(present::turned_position_finding(records.front().position_column) + ".");
     return;
   }
   if (checks.exchanged_ratio > 1.0) {
@@ -85,6 +82,12 @@ void add_checks(const DiagnosisReport& outcome, std::vector<std::string>& out) {
       out.push_back(records[i].name + ": " + text + ".");
       said.insert(records[i].name);
     }
+  }
+  if (checks.records_differ) {
+    out.emplace_back(
+        "The records are not read alike: mend each by itself with import and --flip, --advance or "
+        "--map, and diagnose what it writes.");
+    return;
   }
   // a span tells nothing where the positions as they are follow the command
   const greybox::ValueRange range = checks.stroke_m > 0.0 || checks.wrong_scale

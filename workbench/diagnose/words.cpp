@@ -31,6 +31,15 @@ bool leaves_out_commands(const DiagnosisReport& outcome) {
                      [](const auto& record) { return record.command_is_interpolated; });
 }
 
+/// True where a delay of the model makes up for the advance that was asked for.
+bool takes_advance_back(const DiagnosisReport& outcome) {
+  const selection::Diagnosis& d = outcome.diagnosis;
+  const double advance_s = outcome.prepared->reading.advance_command_s;
+  return advance_s > 0.0 &&
+         std::find(d.missing.begin(), d.missing.end(), "transport_delay") != d.missing.end() &&
+         d.final.value("transport_delay.delay_s") > 0.5 * advance_s;
+}
+
 /// Why a diagnosis ended before everything was tried.
 std::string interruption_words(const DiagnosisReport& outcome) {
   const std::string rest =
@@ -176,6 +185,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
                     ": something changed on the rig, or in its readings, then.");
     }
   }
+  if (takes_advance_back(outcome)) {
+    out.push_back(fmt::format("The delay takes back --advance {:.6g}: diagnose without it first.",
+                              outcome.prepared->reading.advance_command_s));
+  }
   add_strained_words(d, out);
   if (d.repetition) {
     out.push_back("The motion repeats every " +
@@ -190,8 +203,8 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back("What remains does not follow from command or motion: " +
                   present::disturbance_words(*d.disturbance) + "." +
                   (leaves_out_commands(outcome)
-                       ? " The commands between the samples, which this log leaves out, act like "
-                         "that too: it need not be a disturbance of the rig."
+                       ? " The commands between the samples, which this log leaves out, look "
+                         "the same: it need not be a disturbance of the rig."
                        : ""));
   }
   if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));

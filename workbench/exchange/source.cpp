@@ -127,10 +127,7 @@ void each_message(const std::string& input, const Kinds& kinds,
                   const std::function<void(const Message&)>& take,
                   const config::record::ReadOptions& reading) {
   if (is_log(input)) {
-    if (reading.given()) {
-      throw config::schema::UsageError(
-          input + ": options that say how to read a record are not for the messages of a log");
-    }
+    config::record::require_as_logged(reading, input);
     TreeHandler handler(take);
     read_log(input, kinds, handler);
     return;

@@ -112,14 +112,20 @@ std::vector<std::string> size_findings(const config::record::Record& record) {
 }
 
 std::string advance_words(double s) {
-  return fmt::format("--advance {:.6g} takes the command {}", s, s > 0.0 ? "earlier" : "later");
+  return fmt::format("--advance of about {:.4g}, beside one already given, takes the command {}", s,
+                     s > 0.0 ? "earlier" : "later");
 }
 
 }  // namespace
 
-std::string turning_map(const SourceColumn& position) {
-  if (position.header.empty()) return {};
-  return signed_map(position.turned ? "" : "-", position);
+std::string turned_position_finding(const SourceColumn& position) {
+  const std::string map =
+      position.header.empty() ? "" : " (" + signed_map(position.turned ? "" : "-", position) + ")";
+  return "the position moves against the command and lies within the model's stroke only when "
+         "turned: its sign is turned" +
+         map +
+         ", or that of the command is (--flip) and the sensor counts back from the far end, where "
+         "the stroke is to be added";
 }
 
 std::string exchanging_map(const SourceColumn& command, const SourceColumn& position) {

@@ -19,8 +19,8 @@ namespace greybox = estimator::greybox;
                                                          const greybox::SourceColumn& command,
                                                          const greybox::SourceColumn& position);
 
-/// "--map y=-Position"; empty: the file has no headers.
-[[nodiscard]] std::string turning_map(const greybox::SourceColumn& position);
+/// Positions that move against the command and lie within the stroke only when turned.
+[[nodiscard]] std::string turned_position_finding(const greybox::SourceColumn& position);
 
 /// "--map u=Position,y=Command"; empty: the file has no headers.
 [[nodiscard]] std::string exchanging_map(const greybox::SourceColumn& command,

@@ -198,10 +198,7 @@ std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
   std::map<std::int64_t, std::vector<Place>> places;
   for (const std::string& file : files_of(logs)) {
     if (is_log(file)) {
-      if (reading.given()) {
-        throw config::schema::UsageError(
-            file + ": options that say how to read a record are not for a log of the daemon");
-      }
+      config::record::require_as_logged(reading, file);
       Place place = place_of(file);
       places[place.run_id].push_back(std::move(place));
     } else {

@@ -24,7 +24,7 @@ constexpr int kLeadIterations = 10;
 /// Iterations after which a lead must leave less than none does to be fitted further.
 constexpr int kLeadFirstIterations = 2;
 constexpr double kLeadTolerance = 1e-3;
-/// Samples for which an interpolated command errs alike.
+/// Correlation length of the interpolation error, as assumed.
 constexpr double kCorrelated_samples = 4.0;
 
 /// True where the model as given leaves more with the lead than without.

@@ -30,8 +30,8 @@ double motion_m(const FitDataset& data) {
   return std::sqrt(squares / samples);
 }
 
-/// Error of the first round of a search, of the motion that there is to be explained; infinite for
-/// a simulation that leaves all bounds.
+/// Error of the first round of a search, of the motion that there is to be explained; infinite
+/// where the simulation diverges.
 double left_ratio(const SearchContext& context, const SearchStart& start) {
   const double ratio = start.branch.stage.fitted.validation_rms_m / motion_m(context.problem.data);
   return std::isfinite(ratio) ? ratio : std::numeric_limits<double>::infinity();
@@ -53,8 +53,6 @@ double left_by(const SearchContext& context, const Reading& read) {
 void try_other_readings(const SearchContext& context, const SearchStart& start,
                         RecordChecks& checks) {
   if (checks.misread() || is_explained(context, start.branch.stage)) return;
-  const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
-                                  [](const CommandResponse& r) { return r.with_command(); });
   const bool has_stroke = checks.stroke_m > 0.0;  // which tells by itself
   const double left = left_ratio(context, start);
   if (!std::isfinite(left)) return;
@@ -70,7 +68,7 @@ void try_other_readings(const SearchContext& context, const SearchStart& start,
     });
     checks.wrong_scale = leaves_much_less(scaled);
   }
-  if (driven || checks.wrong_scale) return;
+  if (checks.driven() || checks.wrong_scale) return;
   const double turned = left_by(context, [](Dataset& record) {
     for (double& u_V : record.u_V) u_V = -u_V;
   });

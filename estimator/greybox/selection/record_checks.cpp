@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -179,27 +180,52 @@ double command_late_s(const plant_sim::ModelFile& model, const Dataset& record,
   return late_samples > kMostLead_samples ? late_samples * record.sample_time_s : 0.0;
 }
 
-/// RecordChecks::command_late_s: that of every recording, of whose blocks the earliest response
-/// counts.
-double command_late_s(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
-                      const std::vector<CommandResponse>& responses) {
+/// Sets command_late_s where every recording has it, records_differ where some have. Of the blocks
+/// of a recording the earliest response counts.
+void find_late_commands(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
+                        RecordChecks& checks) {
   std::map<std::string, std::size_t> earliest;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const auto [at, first] = earliest.emplace(records[i].name, i);
-    if (!first && responses[i].delay_s < responses[at->second].delay_s) at->second = i;
+    if (!first && checks.responses[i].delay_s < checks.responses[at->second].delay_s) {
+      at->second = i;
+    }
   }
   double least_s = std::numeric_limits<double>::infinity();
   double most_s = 0.0;
   for (const auto& [name, i] : earliest) {
-    const double late_s = command_late_s(model, records[i], responses[i]);
+    const double late_s = command_late_s(model, records[i], checks.responses[i]);
     least_s = std::min(least_s, late_s);
     most_s = std::max(most_s, late_s);
-    if (most_s - least_s > kAlike_samples * records[i].sample_time_s) return 0.0;
   }
-  return least_s;
+  if (most_s - least_s > kAlike_samples * records.front().sample_time_s) {
+    checks.records_differ = true;
+  } else {
+    checks.command_late_s = least_s;
+  }
+}
+
+/// True where the motion of one recording follows the command and that of another goes against it.
+bool have_opposite_signs(const std::vector<Dataset>& records,
+                         const std::vector<CommandResponse>& responses) {
+  std::set<std::string> with;
+  std::set<std::string> against;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (responses[i].with_command()) with.insert(records[i].name);
+    if (responses[i].against_command()) against.insert(records[i].name);
+  }
+  const auto lacks_one = [](const std::set<std::string>& a, const std::set<std::string>& b) {
+    return std::any_of(a.begin(), a.end(), [&](const auto& name) { return !b.contains(name); });
+  };
+  return lacks_one(with, against) && lacks_one(against, with);
 }
 
 }  // namespace
+
+bool RecordChecks::driven() const {
+  return std::any_of(responses.begin(), responses.end(),
+                     [](const CommandResponse& r) { return r.with_command(); });
+}
 
 RecordChecks check_records(const SearchContext& context, double rms_m) {
   const FitDataset& data = context.problem.data;
@@ -219,8 +245,10 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
     checks.responses.push_back(
         command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
   }
+  checks.records_differ = have_opposite_signs(data.records, checks.responses);
+  if (checks.records_differ) return checks;
   checks.position_turned =
-      excess.below_m < 0.0 && checks.high_m <= 0.0 && -checks.low_m <= checks.stroke_m &&
+      lies_turned(checks.low_m, checks.high_m, checks.stroke_m) &&
       std::all_of(checks.responses.begin(), checks.responses.end(),
                   [](const CommandResponse& r) { return r.against_command(); });
   if (checks.position_turned) return checks;
@@ -234,10 +262,8 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   checks.columns_exchanged =
       !made_up && std::any_of(checks.responses.begin(), checks.responses.end(),
                               [](const CommandResponse& r) { return r.columns_exchanged(); });
-  checks.command_late_s = command_late_s(model, data.records, checks.responses);
-  const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
-                                  [](const CommandResponse& r) { return r.with_command(); });
-  if (driven || checks.columns_exchanged) return checks;
+  find_late_commands(model, data.records, checks);
+  if (checks.driven() || checks.columns_exchanged) return checks;
   FitDataset turned = data;
   for (Dataset& record : turned.records) {
     for (double& u_V : record.u_V) u_V = -u_V;

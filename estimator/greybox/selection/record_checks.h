@@ -33,6 +33,9 @@ struct RecordChecks {
   std::vector<CommandResponse> responses;  ///< one per record
   /// Positions outside the stroke that move against the command, and lie within it when turned.
   bool position_turned = false;
+  /// Records whose commands have opposite signs, or whose clocks are shifted differently: no one
+  /// reading mends them all.
+  bool records_differ = false;
   MotionRatio motion;  ///< first record, by the model as given
   /// The motion is about 1000 times the model's, or a thousandth, or the positions span far more
   /// than the stroke, as millimetres taken for metres do, and no fit makes up for it; or, on a
@@ -49,10 +52,12 @@ struct RecordChecks {
   /// motion; 0: it is not, or by no more than a search for effects tries.
   double command_late_s = 0.0;
 
+  /// The command drives a record's motion: no sign is turned.
+  [[nodiscard]] bool driven() const;
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
   /// True for a record that has to be read differently before any effect is sought.
   [[nodiscard]] bool misread() const {
-    return turned_sign() || position_turned || wrong_scale || columns_exchanged ||
+    return turned_sign() || position_turned || records_differ || wrong_scale || columns_exchanged ||
            command_late_s > 0.0;
   }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }

@@ -94,6 +94,15 @@ TEST(Words, DoNotAskForTheUnitOfALongAxisThatTheModelFollows) {
   EXPECT_THAT(words(c).verdict, StartsWith("Probably misread"));
 }
 
+TEST(Words, NameAPositionThatIsTurnedOutOfItsStroke) {
+  validation::Comparison c = compared([](double, double u, double) { return -2.0 * kGain * u; });
+  c.stroke_m = 10.0;
+  EXPECT_THAT(words(c).verdict, Not(StartsWith("Probably misread")));
+  for (double& y_m : c.record.y_m) y_m -= 5.0;
+  EXPECT_THAT(words(c).verdict, StartsWith("Probably misread"));
+  EXPECT_THAT(notes(c), testing::ElementsAre(HasSubstr("only when turned")));
+}
+
 TEST(Words, NameTheRangeThatFails) {
   const Words said = words(compared([](double t, double u, double) {
     return t > 15.0 && t < 20.0 ? 0.01 * std::sin(40.0 * t) + 0.0 * u : 0.0;

@@ -145,6 +145,18 @@ TEST_F(FormatsTest, ARecordGoesThroughEveryFormat) {
   EXPECT_THAT(content("out.mcap"), HasSubstr(R"("y_m":0.306)"));
 }
 
+TEST_F(FormatsTest, SamplesOfALogAreReadAsAskedAndItsMessagesAreNot) {
+  const std::string input = log();
+  config::record::ReadOptions reading;
+  reading.flip_command = true;
+  cli::export_log(input, folder_ / "turned.mat", "sample", "", reading);
+  EXPECT_EQ(config::record::read_record(folder_ / "turned.mat").u_V,
+            config::record::read_record(input, reading).u_V);
+  EXPECT_THROW(cli::export_log(input, folder_ / "turned.json", "", "", reading),
+               config::schema::UsageError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "turned.json"));
+}
+
 TEST_F(FormatsTest, JsonLinesAreReadByPython) {
   cli::export_log(log(), folder_ / "out.json");
   EXPECT_EQ(run_python("read_json.py " + (folder_ / "out.json").string()).output, "good\n");

@@ -114,7 +114,8 @@ TEST(RecordFindings, NameClocksThatAreShifted) {
   EXPECT_THAT(
       record_findings(record),
       ElementsAre(AllOf(HasSubstr("moves 100 ms before the command that drives it: the clocks"),
-                        EndsWith("; --advance 0.1 takes the command earlier"))));
+                        EndsWith("; --advance of about 0.1, beside one already given, takes the "
+                                 "command earlier"))));
 }
 
 TEST(StrokeFinding, NamesTheStrokeAndTheUnit) {

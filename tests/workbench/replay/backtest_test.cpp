@@ -119,6 +119,7 @@ TEST_F(Backtest, RefusesBadInputWithOneLine) {
   EXPECT_EQ(spoolwatch("backtest " + rules).exit_code, 2);
   EXPECT_EQ(spoolwatch("backtest " + rules + " /tmp/no/such/log").exit_code, 65);
   EXPECT_EQ(spoolwatch("backtest " + rules + " " + folder_->path().string()).exit_code, 65);
+  EXPECT_EQ(spoolwatch("backtest " + rules + " " + log("whole") + " --flip").exit_code, 2);
   EXPECT_EQ(spoolwatch("backtest /tmp/no/such.toml " + log("whole")).exit_code, 78);
   EXPECT_EQ(
       spoolwatch("backtest " + program::shipped("bench_rig.toml") + " " + log("whole")).exit_code,

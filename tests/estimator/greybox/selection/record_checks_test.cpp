@@ -38,6 +38,20 @@ TEST(RecordChecks, ATurnedCommandIsNoticed) {
   EXPECT_FALSE(checked(record()).turned_sign());
 }
 
+TEST(RecordChecks, OneOfTwoRecordingsWhoseCommandIsTurnedIsNoticed) {
+  Dataset good = record();
+  good.name = "good.csv";
+  Dataset turned = good;
+  turned.name = "turned.csv";
+  for (double& u_V : turned.u_V) u_V = -u_V;
+  SearchContext context = context_with(good);
+  context.problem.data = fit_dataset({good, turned}, {});
+  const RecordChecks checks = check_records(context, 1.0);
+  EXPECT_TRUE(checks.records_differ);
+  EXPECT_TRUE(checks.misread());
+  EXPECT_FALSE(checks.turned_sign());
+}
+
 TEST(RecordChecks, APositionThatLiesWithinTheStrokeWhenTurnedIsNoticed) {
   Dataset turned = record();
   for (double& y_m : turned.y_m) y_m = -y_m;
@@ -127,6 +141,9 @@ TEST(RecordChecks, OneOfTwoRecordingsWhoseCommandIsLoggedLateDoesNotShiftBoth) {
   };
   EXPECT_EQ(late_s(good, late), 0.0);
   EXPECT_EQ(late_s(late, good), 0.0);
+  SearchContext mixed = context_with(good);
+  mixed.problem.data = fit_dataset({good, late}, {});
+  EXPECT_TRUE(check_records(mixed, first_stage(mixed).fitted.validation_rms_m).records_differ);
   Dataset other_late = late;
   other_late.name = "other.csv";
   EXPECT_NEAR(late_s(late, other_late), 8.0 * good.sample_time_s, 1e-12);
