@@ -57,7 +57,7 @@ target_compile_definitions(spoolwatch_test_paths INTERFACE
 # copied structures, which its neighbours have as well. A name in an unnamed namespace is unique in its folder.
 option(SPOOLWATCH_UNITE "Compile several sources as one unit; OFF shows a missing #include" ON)
 function(spoolwatch_unite target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SPOOLWATCH_UNITE} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SPOOLWATCH_UNITE} UNITY_BUILD_BATCH_SIZE 18)
   if(SPOOLWATCH_UNITE)  # GCC takes what a source includes for a header, which must not have types of its own
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()

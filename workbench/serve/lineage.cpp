@@ -13,12 +13,12 @@ using present::number_or_null;
 
 constexpr std::size_t kMostCommands = 1000;
 
-std::string text_in(const ordered_json& object, const char* key) {
+std::string stored_text(const ordered_json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-double number_in(const ordered_json& object, const char* key) {
+double stored_number(const ordered_json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : config::signals::kNaN;
 }
@@ -65,13 +65,13 @@ Lineage lineage_of(const ordered_json& json) {
   if (!json.is_object()) return lineage;
   if (const auto nodes = json.find("nodes"); nodes != json.end() && nodes->is_array()) {
     for (const ordered_json& one : *nodes) {
-      if (!one.is_object() || text_in(one, "model").empty()) continue;
-      ModelNode& node =
-          lineage.add(text_in(one, "model"), text_in(one, "parent"), text_in(one, "what"));
-      node.record = text_in(one, "record");
-      node.heldout_m = number_in(one, "heldout_m");
-      node.rms_m = number_in(one, "rms_m");
-      node.noise_floor_m = number_in(one, "noise_floor_m");
+      if (!one.is_object() || stored_text(one, "model").empty()) continue;
+      ModelNode& node = lineage.add(stored_text(one, "model"), stored_text(one, "parent"),
+                                    stored_text(one, "what"));
+      node.record = stored_text(one, "record");
+      node.heldout_m = stored_number(one, "heldout_m");
+      node.rms_m = stored_number(one, "rms_m");
+      node.noise_floor_m = stored_number(one, "noise_floor_m");
       if (const auto rotary = one.find("rotary"); rotary != one.end() && rotary->is_boolean()) {
         node.rotary = rotary->get<bool>();
       }

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr int kQuickIterations = 10;
+constexpr int kQuickInnovationIterations = 10;
 constexpr double kQuickTolerance = 2e-4;
 constexpr int kTrialIterations = 15;
 constexpr double kTrialTolerance = 1e-4;
@@ -165,7 +165,7 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
   const bool trial = effort == InnovationFit::trial;
   FitOptions options;
   options.max_iterations = effort == InnovationFit::none ? 0
-                           : quick                       ? kQuickIterations
+                           : quick                       ? kQuickInnovationIterations
                            : trial                       ? kTrialIterations
                                                          : kIterations;
   options.tolerance = quick ? kQuickTolerance : trial ? kTrialTolerance : kTolerance;

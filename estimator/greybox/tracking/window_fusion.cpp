@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Limit of chi-square in standard deviations above its mean.
-constexpr double kChance = 4.0;
+constexpr double kChanceSpread = 4.0;
 
 }  // namespace
 
@@ -38,7 +38,8 @@ void WindowFusion::add(const VectorXd& theta, const MatrixXd& covariance, bool g
 
 FusedEstimate WindowFusion::fused() const {
   const auto n = static_cast<Index>(parameters_);
-  const double most = static_cast<double>(n) + kChance * std::sqrt(2.0 * static_cast<double>(n));
+  const double most =
+      static_cast<double>(n) + kChanceSpread * std::sqrt(2.0 * static_cast<double>(n));
   FusedEstimate out;
   MatrixXd information = MatrixXd::Zero(n, n);
   VectorXd weighted = VectorXd::Zero(n);

@@ -114,7 +114,7 @@ TEST(RigProgram, AnswersOnASerialLineToo) {
     ASSERT_EQ(write(outer, request.data(), request.size()), 8);
     while (poll(&file, 1, reply.empty() ? 500 : 50) > 0) {
       std::uint8_t bytes[64];
-      const ssize_t count = read(outer, bytes, sizeof bytes);
+      const ssize_t count = ::read(outer, bytes, sizeof bytes);
       reply.insert(reply.end(), bytes, bytes + std::max<ssize_t>(count, 0));
     }
   }

@@ -8,7 +8,7 @@
 namespace estimator::greybox::selection {
 namespace {
 
-SearchStart two_effects(const SearchContext& context) {
+SearchStart first_two_effects(const SearchContext& context) {
   SearchStart start = start_search(context);
   if (start.branch.stage.added.size() == 1) add_second_effect(context, start);
   return start;
@@ -19,7 +19,7 @@ TEST(PairStart, FindsTwoThatPassForTwoOthersOneByOne) {
       "motion=multisine,length_s=30,external_leakage.conductance_m3ps_per_Pa=3.7e-13,"
       "load_force.force_N=-450",
       81);
-  SearchStart start = two_effects(context);
+  SearchStart start = first_two_effects(context);
   const double one_by_one_m = start.branch.stage.fitted.validation_rms_m;
   EXPECT_GT(one_by_one_m, 1.5 * context.problem.data.noise_floor_m) << "nothing to be found";
   prefer_pair(context, start);
@@ -31,7 +31,7 @@ TEST(PairStart, FindsTwoThatPassForTwoOthersOneByOne) {
 TEST(PairStart, StaysWhereNoPairExplainsTheRecord) {
   const SearchContext context = diagnose_test::context_of(
       "motion=multisine,length_s=20,left_out=cubic_damping,left_out.size=100000", 82);
-  SearchStart start = two_effects(context);
+  SearchStart start = first_two_effects(context);
   const std::vector<std::string> before = start.branch.stage.added;
   const double before_m = start.branch.stage.fitted.validation_rms_m;
   prefer_pair(context, start);
