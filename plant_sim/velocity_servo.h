@@ -39,7 +39,7 @@ class VelocityServo {
       v(ParameterInfo{"gain_mps_per_V", "speed per command", 0.0, 100.0, 0.05, 0.05, 2.0},
         gain_mps_per_V);
       v(ParameterInfo{"time_constant_s", "lag of the speed behind the command; 0 is none", 0.0,
-                      10.0, 0.01, 0.0, 0.2},
+                      10.0, 0.01, 0.0, 2.0},
         time_constant_s);
       v(ParameterInfo{"damping_ratio",
                       "of a lag of second order, natural frequency 1 / time_constant_s; 0: first "

@@ -305,7 +305,8 @@ bool is_spool(const ReadColumn& column) {
 
 bool is_drive_set_point(const ReadColumn& column) {
   const std::string& si = column.text.unit.si;
-  return is_reference(column) && (si == "V" || si == "A" || si == "pct") && may_drive(column) &&
+  const bool drives = si == "V" || si == "A" || si == "pct" || si == "N" || si == "Nm";
+  return is_reference(column) && drives && may_drive(column) &&
          !has_word(column.words, kOtherWords) && !has_word(column.words, kPositionWords);
 }
 

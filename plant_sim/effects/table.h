@@ -6,6 +6,7 @@
 #include "plant_sim/effects/coupled_slaves.h"
 #include "plant_sim/effects/deadband.h"
 #include "plant_sim/effects/drive_lag.h"
+#include "plant_sim/effects/drive_saturation.h"
 #include "plant_sim/effects/effect_set.h"
 #include "plant_sim/effects/encoder_eccentricity.h"
 #include "plant_sim/effects/entrained_air.h"
@@ -33,6 +34,7 @@ using Effects = EffectSet<S,                 //
                           TransportDelay,    //
                           NullBias,          //
                           ValveHysteresis,   //
+                          DriveSaturation,   //
                           DriveLag,          //
                           SpoolRateLimit,    //
                           Deadband,          //

@@ -1,6 +1,6 @@
 // An electric axis: a linear motor, or a motor with a fast current loop that turns a joint.
 //
-//   M v' = g u - d v - F(y, v)          F: load and friction of machine.h
+//   M v' = g u - d v - F(y, v)          F: load and friction of machine.h, |u| limited
 //
 // With a lag of the drive z in the place of u: lag z' = u - z, z = 0 at rest.
 // Rotary: the same equation in rad, kg m^2 and N m, under the names of metre, kg and N.

@@ -77,6 +77,13 @@ void draw_on_axis(const std::string& name, double push, Case& of, Random& random
   const auto length = [&](double typical) { return unit.length * push * random.around(typical); };
   if (name == "transport_delay") h.delay_s = std::min(0.03, push * random.around(0.006));
   if (name == "drive_lag") h.lag_s = std::min(0.02, push * random.around(0.006));
+  // set so that the motion reaches it
+  if (name == "drive_saturation") {
+    const Record free = simulate(of, 100);
+    double most_V = 0.0;
+    for (const double u_V : free.u_V) most_V = std::max(most_V, std::abs(u_V));
+    h.drive_limit_V = most_V * std::max(0.3, random.uniform(0.6, 0.85) / push);
+  }
   if (name == "load_force") h.force_N = random.sign() * force(8.0);
   if (name == "quadratic_damping") {
     h.quadratic_N_s2_per_m2 = force(400.0) / (unit.length * unit.length);

@@ -9,7 +9,8 @@ namespace truth {
 struct Hidden {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double delay_s = 0.0;
-  double lag_s = 0.0;  ///< time constant of an axis' drive
+  double lag_s = 0.0;            ///< time constant of an axis' drive
+  double drive_limit_V = kNone;  ///< largest command that an axis' drive follows
   double null_bias_V = 0.0;
   double hysteresis_V = 0.0;  ///< half the width of the play
   double spool_rate_mps = kNone;

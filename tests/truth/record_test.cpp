@@ -137,7 +137,7 @@ TEST(TruthVisibility, IsOneForAHealthyRecordAndFarAboveForAPlainEffect) {
 }
 
 TEST(TruthPlan, HidesAsManyEffectsAsThePlanSays) {
-  EXPECT_EQ(effects().size(), 20U);
+  EXPECT_EQ(effects().size(), 21U);
   EXPECT_GE(left_out_table().size(), 6U);
   Record record;
   const Planned single = plan_record("single", 1, 1, record);

@@ -10,6 +10,7 @@ const std::vector<Parameter>& parameters() {
   static const std::vector<Parameter> table{
       {"transport_delay", "delay_s", &H::delay_s, 0.02},
       {"drive_lag", "lag_s", &H::lag_s, 0.02},
+      {"drive_saturation", "limit_V", &H::drive_limit_V, 0.02},
       {"null_bias", "offset_V", &H::null_bias_V, 0.02},
       {"valve_hysteresis", "half_width_V", &H::hysteresis_V, 0.02},
       {"spool_rate_limit", "rate_mps", &H::spool_rate_mps, 0.02},

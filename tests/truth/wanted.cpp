@@ -23,7 +23,8 @@ const Names& variants() {
     Names found;
     for (const std::string& effect : effects()) {
       // an axis alone has a drive
-      if (effect != "friction" && effect != "drive_lag") found.push_back(effect);
+      const bool is_drive = effect.rfind("drive_", 0) == 0;
+      if (effect != "friction" && !is_drive) found.push_back(effect);
     }
     found.insert(found.end(), {"friction_coulomb", "friction_stribeck", "friction_presliding"});
     return found;
@@ -154,8 +155,8 @@ Wanted on_axis(std::size_t index) {
   static const std::vector<Names> pairs{{"friction_stribeck", "force_ripple"},
                                         {"friction_coulomb", "load_force"},
                                         {"friction_coulomb", "load_spring"},
-                                        {"friction_stribeck", "transport_delay"},
-                                        {"drive_lag"}};
+                                        {"friction_stribeck", "transport_delay"}};
+  static const std::vector<Names> drives{{"drive_saturation"}, {"drive_lag"}};
   const std::size_t turn = index % 12;
   const std::size_t round = index / 12;
   Wanted want;
@@ -169,6 +170,8 @@ Wanted on_axis(std::size_t index) {
     want.effects = turns[turn];
   } else if (round % 4 < 2) {
     want.effects = pairs[(round % 2 + round / 4 * 2) % pairs.size()];
+  } else if (round % 8 > 5) {
+    want.effects = drives[round % 2];
   } else {
     want.left_out = &axis_left_out_table().front();
   }

@@ -54,6 +54,7 @@ struct Place {
   std::string times;
   std::string variable;  ///< name in the score test
   double typical = 0.0;
+  bool dissipates = false;
 };
 
 std::string signal_of(const std::string& variable) {
@@ -75,13 +76,19 @@ std::optional<Place> place_of(const SearchContext& context, const RigScale& rig,
                               const CurveGain& curve) {
   Place place{"force", signal_of(curve.variable), "", curve.variable, kCurveForce * rig.force_N};
   if (place.over.empty()) return {};
-  if (curve.input == ResidualInput::force) return place;
+  if (curve.input == ResidualInput::force) {
+    place.dissipates = place.over == "v_mps";
+    return place;
+  }
   if (curve.input == ResidualInput::drag) {
     place.times = "v_mps";
     place.typical /= rig.speed_mps;
     return place;
   }
   const double opening = opening_per_V(context.problem.model);
+  const bool adds = curve.input != ResidualInput::gain;
+  // what is added to an axis' command over its motion is a force
+  if (!(opening > 0.0) && adds && place.over != "u_V") return place;
   place.site = opening > 0.0 ? "opening" : "command";
   const std::string own = opening > 0.0 ? "x_m" : "u_V";
   if (place.over == "u_V") place.over = own;
@@ -175,8 +182,7 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
       plant_sim::effects_of(attempt.context.problem.model);
   std::vector<FreeParameter> own = effect_parameters(effects.back(), kEveryRefinement);
   const Place& place = attempt.place;
-  const bool dissipates = place.site == "force" && place.over == "v_mps" && place.times.empty();
-  for (std::size_t i = 0; i < own.size() && dissipates; ++i) {
+  for (std::size_t i = 0; i < own.size() && place.dissipates; ++i) {
     const double speed_mps = attempt.effect.curve->x[i];
     if (speed_mps > 0.0) own[i].lower = 0.0;
     if (speed_mps < 0.0) own[i].upper = 0.0;

@@ -3,7 +3,8 @@
 //
 //   site      added to what the site has            variable
 //   force     f(x), or v f(x), against extension    x: position, speed, command, acceleration
-//   opening   f(x), or the opening times f(x)       (without an opening: of the command)
+//   opening   f(x), or the opening times f(x)       (without an opening: times the
+//             command, or over it)
 //   friction  its level times 1 + f(x)              x: position
 //
 // The score test of innovation_curves.h ranks sites and variables; the best are fitted in the model

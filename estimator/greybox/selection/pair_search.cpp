@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "estimator/greybox/selection/projection.h"
 #include "estimator/greybox/selection/screening_segment.h"
@@ -21,9 +24,12 @@ using Eigen::VectorXd;
 constexpr Index kPairSizes = 4;
 /// Share of the distance between two sizes by which a linear estimate may lie beyond them.
 constexpr double kBeyondSizes = 0.2;
-/// Pairs that are screened on the whole record, the best of the screening segment.
-constexpr std::size_t kLookedAt = 16;
-/// Pairs that are fitted, each from the best start seen from either base.
+/// Pairs that are fitted to the screening segment, the best of it, each from the best start seen
+/// from either base: where one effect hides the other, their sizes are not those of any grid.
+constexpr std::size_t kFittedToSegment = 24;
+/// Of these, pairs of any one effect: one that helps beside all others would crowd these out.
+constexpr std::size_t kPairsOfEffect = 6;
+/// Pairs that are fitted to the whole record.
 constexpr std::size_t kFittedPairs = 6;
 /// Iterations on the segment; pairs within this factor of the best continue on the whole record.
 constexpr int kPairIterations = 4;
@@ -124,13 +130,26 @@ void screened(const plant_sim::ModelFile& model, const FitDataset& data,
   couple.starts.emplace_back(best);
 }
 
-/// Screens all pairs from all bases and keeps the `most` best, best first.
+/// The best of pairs in ascending order of their cost, few of any one effect.
+std::vector<Couple> varied(const std::vector<Couple>& couples) {
+  std::map<const Effect*, std::size_t> pairs_of;
+  std::vector<Couple> kept;
+  for (const Couple& couple : couples) {
+    if (kept.size() == kFittedToSegment) break;
+    std::size_t& of_first = pairs_of[couple.first];
+    std::size_t& of_second = pairs_of[couple.second];
+    if (of_first == kPairsOfEffect || of_second == kPairsOfEffect) continue;
+    ++of_first;
+    ++of_second;
+    kept.push_back(couple);
+  }
+  return kept;
+}
+
+/// Screens all pairs from all bases and keeps the best, best first.
 void look_at(const SearchContext& context, const FitDataset& data, const Projection& projection,
-             const std::array<const VectorXd*, 2>& bases, std::size_t most,
-             std::vector<Couple>& couples) {
+             const std::array<const VectorXd*, 2>& bases, std::vector<Couple>& couples) {
   in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
-    couples[i].cost = std::numeric_limits<double>::infinity();
-    couples[i].starts.clear();
     for (const VectorXd* base : bases) {
       if (!context.cancelled())
         screened(context.problem.model, data, projection, *base, couples[i]);
@@ -138,7 +157,7 @@ void look_at(const SearchContext& context, const FitDataset& data, const Project
   });
   std::stable_sort(couples.begin(), couples.end(),
                    [](const Couple& a, const Couple& b) { return a.cost < b.cost; });
-  couples.resize(std::min(couples.size(), most));
+  couples = varied(couples);
 }
 
 Candidate quick_fit(const SearchContext& context, const ModelStage& stage, const Couple& couple,
@@ -148,6 +167,25 @@ Candidate quick_fit(const SearchContext& context, const ModelStage& stage, const
   Candidate candidate = quick_fit(context, stage, screened, iterations);
   candidate.effects.push_back(couple.second->name);
   return candidate;
+}
+
+/// Keeps the pairs of the least errors, best first, that are not far behind the best.
+void keep_best(std::vector<Candidate>& begun, std::vector<Couple>& couples) {
+  std::vector<std::size_t> order(couples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return begun[a].validation_rms_m < begun[b].validation_rms_m;
+  });
+  const double most_m = order.empty() ? 0.0 : kFarPair * begun[order.front()].validation_rms_m;
+  std::vector<Candidate> fits;
+  std::vector<Couple> kept;
+  for (const std::size_t i : order) {
+    if (kept.size() == kFittedPairs || !(begun[i].validation_rms_m < most_m)) break;
+    fits.push_back(std::move(begun[i]));
+    kept.push_back(std::move(couples[i]));
+  }
+  begun = std::move(fits);
+  couples = std::move(kept);
 }
 
 }  // namespace
@@ -172,10 +210,7 @@ std::vector<Candidate> pair_search(const SearchContext& context, const ModelStag
   }
   const ScreeningSegment segment = screening_segment(context.problem.data, stage.fitted);
   const Projection there(segment.fitted, segment.data.all_mask);
-  look_at(context, segment.data, there, bases, kLookedAt, couples);
-  look_at(context, context.problem.data,
-          Projection(stage.fitted, context.problem.data.training_mask), bases, kFittedPairs,
-          couples);
+  look_at(context, segment.data, there, bases, couples);
   SearchContext on_segment = context;
   on_segment.problem.data = segment.data;
   const ModelStage before{stage.added, segment.fitted};
@@ -183,15 +218,13 @@ std::vector<Candidate> pair_search(const SearchContext& context, const ModelStag
   in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
     if (!context.cancelled()) begun[i] = quick_fit(on_segment, before, couples[i], kPairIterations);
   });
-  double best_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.validation_rms_m);
+  keep_best(begun, couples);
   std::vector<Candidate> candidates(couples.size());
   for (std::size_t from = 0; from < couples.size(); from += kPairWave) {
     in_parallel(std::min(kPairWave, couples.size() - from), context.options.threads,
                 [&](std::size_t k) {
                   const std::size_t i = from + k;
-                  if (context.cancelled() || !(begun[i].validation_rms_m < kFarPair * best_m))
-                    return;
+                  if (context.cancelled()) return;
                   couples[i].starts = {begun[i].fitted.theta};
                   candidates[i] = quick_fit(context, stage, couples[i], kQuickIterations);
                 });

@@ -3,8 +3,8 @@
 //
 // Every pair is simulated in several sizes of both; the projection (projection.h) gives the error
 // that remains after the parameters adjust, and the sizes between those that were simulated. The
-// most promising pairs are fitted. Periodic effects are excluded: their wavelengths would need a
-// scan per partner.
+// most promising pairs are fitted to a segment, the best of these to the record. Periodic effects
+// are excluded: their wavelengths would need a scan per partner.
 #pragma once
 
 #include <vector>

@@ -22,6 +22,8 @@ namespace {
 constexpr double kOnALine = 0.05;
 /// Damping ratio below which a resonance may be a line: metal structures have some 0.01.
 constexpr double kHardlyDamped_ratio = 0.01;
+/// Damping ratio above which a resonance is too broad to stand for a line at its frequency.
+constexpr double kBroad_ratio = 0.02;
 /// Times over that a second mass is reconsidered while that makes it clearly likelier.
 constexpr int kMostReconsidered = 3;
 constexpr std::string_view kFrequency = ".resonance_Hz";
@@ -102,6 +104,8 @@ void reconsider_second_mass(const SearchContext& plain, InnovationStage& stage) 
 bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
   if (!p.name.ends_with(kFrequency)) return false;
   const double resonance_Hz = p.to_physical(theta);
+  const std::string effect = p.name.substr(0, p.name.size() - kFrequency.size());
+  if (value_or(stage.model.fitted, effect + ".damping_ratio", 0.0) > kBroad_ratio) return false;
   return std::any_of(stage.noise.lines.begin(), stage.noise.lines.end(),
                      [&](const auto& line) { return is_on(line, resonance_Hz); });
 }

@@ -8,8 +8,8 @@
 
 namespace estimator::greybox::selection {
 
-/// True for a resonance at the frequency of one of the stage's lines: hardly damped, it rings with
-/// what disturbs the rig from outside.
+/// True for a resonance of at most 2 % damping at the frequency of one of the stage's lines: it
+/// rings with what disturbs the rig from outside.
 [[nodiscard]] bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p,
                                      double theta);
 

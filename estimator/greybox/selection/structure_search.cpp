@@ -36,6 +36,9 @@ constexpr double kSamePath = 0.1;
 /// lies farther is no effect of the library: further effects are added as long as they help, no
 /// more.
 constexpr double kNearFloor = 5.0;
+/// Share of the error of two effects, taken one after another, that a pair leaves which is taken in
+/// their place though a disturbance keeps it from the noise.
+constexpr double kPairLeaves = 0.25;
 constexpr double kLargeGain = 0.1;
 
 bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
@@ -81,7 +84,28 @@ void try_pairs(const SearchContext& context, const ModelStage& stage, Round& rou
   }
 }
 
-/// Rounds until the branch has `most` effects; false when nothing helps any more, or when the
+/// Refits `before` from the parameters of `after`; none unless it leaves as little without what
+/// came in: it had not converged, and any effect would have helped it on.
+std::optional<ModelStage> converged_without(const SearchContext& context, const ModelStage& before,
+                                            const ModelStage& after) {
+  const double gained_m = after.fitted.validation_rms_m;
+  if (!(gained_m < (1.0 - kRivals) * before.fitted.validation_rms_m)) return {};
+  const ParameterSubset own = subset(after.fitted, [&](const FreeParameter& p) {
+    return std::none_of(after.added.begin() + static_cast<std::ptrdiff_t>(before.added.size()),
+                        after.added.end(),
+                        [&](const std::string& effect) { return belongs_to(p, effect); });
+  });
+  FitSummary fitted = refit_if_hopeful(context, own, gained_m, wide(context.options.threads));
+  const double left_m = fitted.validation_rms_m;
+  if (!(left_m < (1.0 + kRivals) * gained_m) ||
+      !(left_m < (1.0 - kRivals) * before.fitted.validation_rms_m)) {
+    return {};
+  }
+  return ModelStage{before.added, std::move(fitted)};
+}
+
+/// Rounds until the branch has `most` effects, or has converged to what explains the record; false
+/// when nothing helps any more, or when the
 /// linear estimate of none leaves less than `within_m`.
 bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pairs_too,
                    std::size_t most = kMostEffects,
@@ -96,6 +120,13 @@ bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pair
         [&](const Candidate& candidate) { return is_gain(context, branch.stage, candidate); });
     if (pairs_too) try_pairs(context, branch.stage, round);
     branch.stalled = !take(context, round, branch.stage);
+    if (!branch.stalled && !round.before.added.empty() && !context.cancelled()) {
+      if (std::optional<ModelStage> base = converged_without(context, round.before, branch.stage)) {
+        branch.stage = std::move(*base);
+        if (is_explained(context, branch.stage)) return true;
+        continue;
+      }
+    }
     branch.rounds.push_back(std::move(round));
     if (branch.stalled) return false;
   }
@@ -251,11 +282,17 @@ void add_second_effect(const SearchContext& context, SearchStart& start) {
 }
 
 void prefer_pair(const SearchContext& context, SearchStart& start) {
-  std::optional<SearchBranch> pair = start_with_pair(
-      context, start.first, start.branch, kNearFloor * context.problem.data.noise_floor_m);
-  if (!pair || !is_explained(context, pair->stage)) return;
-  CrossValidation halves(context);
-  complete_branch(context, halves, *pair);
+  const double far_less_m = kPairLeaves * start.branch.stage.fitted.validation_rms_m;
+  std::optional<SearchBranch> pair =
+      start_with_pair(context, start.first, start.branch,
+                      std::max(kNearFloor * context.problem.data.noise_floor_m, far_less_m));
+  if (!pair) return;
+  if (is_explained(context, pair->stage)) {
+    CrossValidation halves(context);
+    complete_branch(context, halves, *pair);
+  } else if (!(pair->stage.fitted.validation_rms_m < far_less_m)) {
+    return;
+  }
   start.branch = std::move(*pair);
 }
 

@@ -95,7 +95,7 @@ struct SearchStart {
 /// A second effect beside the first, where one helps at all.
 void add_second_effect(const SearchContext& context, SearchStart& start);
 /// Begins with a pair of effects instead, where one explains the record, alone or with what helps
-/// beside it.
+/// beside it, or leaves far less than the effects so far.
 void prefer_pair(const SearchContext& context, SearchStart& start);
 /// Further effects, pairs of effects and other beginnings, as far as they lead.
 void extend_search(const SearchContext& context, SearchStart& start);
