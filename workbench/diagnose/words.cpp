@@ -23,6 +23,9 @@
 namespace workbench::diagnose {
 namespace {
 
+/// Distance of a value from the file's, in standard deviations of its prior, that strains this.
+constexpr double kFar_sds = 2.5;
+
 /// True for a log of some of a loop's samples: the command changes between them.
 bool leaves_out_commands(const DiagnosisReport& outcome) {
   const std::vector<estimator::greybox::Dataset>& records = outcome.prepared->problem.data.records;
@@ -125,7 +128,6 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
 
 /// Parameters that the record has moved far from what the file says of them.
 void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
-  constexpr double kFar_sds = 2.5;
   std::vector<std::string> at_bound;
   std::vector<const selection::ParameterValue*> far;
   for (const selection::ParameterValue& p : d.parameters) {
@@ -155,6 +157,31 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
                 (one ? " ends at its bound" : " end at their bounds") +
                 ": the errors of the others do not contain by how much " +
                 (one ? "it may be off." : "they may be off."));
+}
+
+/// Data-sheet values that the record corrects by much, though their wide priors allow it.
+void add_corrected_words(const DiagnosisReport& outcome, std::vector<std::string>& out) {
+  constexpr double kMuch_ratio = 1.5;
+  constexpr double kSure = 0.1;
+  constexpr double kDataSheet_sd = 0.5;
+  const selection::Diagnosis& d = outcome.diagnosis;
+  for (const estimator::greybox::FreeParameter& p : outcome.prepared->problem.plant_parameters) {
+    const auto found =
+        std::find_if(d.parameters.begin(), d.parameters.end(),
+                     [&](const selection::ParameterValue& one) { return one.name == p.name; });
+    const bool of_file = p.scale == estimator::greybox::ParameterScale::logarithmic;
+    if (found == d.parameters.end() || found->at_bound || !of_file) continue;
+    if (!(p.prior_sd <= kDataSheet_sd)) continue;
+    if (!(std::abs(found->prior_sds) < kFar_sds)) continue;  // that has been said
+    if (!(std::abs(std::log(found->value / p.unit)) > std::log(kMuch_ratio)) ||
+        !(found->std_error < kSure * found->value)) {
+      continue;
+    }
+    out.push_back(fmt::format(
+        "{} is {}, where the file says {}.", p.name,
+        config::units::words(config::units::quantity(p.name, found->value, found->std_error)),
+        config::units::words(config::units::quantity(p.name, p.unit, std::nan("")))));
+  }
 }
 
 std::string held_words(const DiagnosisReport& outcome) {
@@ -190,6 +217,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
                               outcome.prepared->reading.advance_command_s));
   }
   add_strained_words(d, out);
+  add_corrected_words(outcome, out);
   if (d.repetition) {
     out.push_back("The motion repeats every " +
                   config::units::words(

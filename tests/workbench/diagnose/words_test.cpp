@@ -84,6 +84,28 @@ TEST(Words, ValuesFarFromTheFilesShareASentence) {
   EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("standard deviations of its prior "))));
 }
 
+TEST(Words, ADataSheetValueThatTheRecordCorrectsByMuchIsStated) {
+  ExampleReport outcome;
+  estimator::greybox::FreeParameter damping;
+  damping.name = "damping_N_s_per_m";
+  damping.scale = estimator::greybox::ParameterScale::logarithmic;
+  damping.unit = 1000.0;
+  damping.prior_sd = 0.5;
+  const auto said = [&] {
+    outcome.input.problem.plant_parameters = {damping};
+    return remarks(outcome);
+  };
+  outcome.diagnosis.parameters.front().prior_sds = -2.2;
+  const auto sentence =
+      Contains(std::string("damping_N_s_per_m is 333 +- 4 N s/m, where the file says 1000 N s/m."));
+  EXPECT_THAT(said(), sentence);
+  damping.unit = 350.0;  // by little
+  EXPECT_THAT(said(), Not(sentence));
+  damping.unit = 1000.0;
+  damping.prior_sd = 2.0;  // a guess, no value of a data sheet
+  EXPECT_THAT(said(), Not(sentence));
+}
+
 TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
   ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
