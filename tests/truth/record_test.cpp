@@ -163,6 +163,9 @@ TEST(TruthPlan, TakesAxesByTurnsLinearAndRotaryUndisturbedAndDisturbed) {
   EXPECT_TRUE(rotary.of.outside.any());
   EXPECT_EQ(plan_record("axes", 1, 11, record).hidden.size(), 2U);
   EXPECT_EQ(plan_record("axes", 1, 35, record).of.left_out.kind, LeftOut::Kind::elastic_shaft);
+  EXPECT_EQ(plan_record("axes", 1, 83, record).hidden,
+            std::vector<std::string>{"drive_saturation"});
+  EXPECT_EQ(plan_record("axes", 1, 95, record).hidden, std::vector<std::string>{"drive_lag"});
 }
 
 TEST(TruthPlan, CallsACylindersAreasAnAsymmetryAndListsWhatAServoHasNoPlaceFor) {

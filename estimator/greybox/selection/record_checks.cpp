@@ -180,8 +180,8 @@ double command_late_s(const plant_sim::ModelFile& model, const Dataset& record,
   return late_samples > kMostLead_samples ? late_samples * record.sample_time_s : 0.0;
 }
 
-/// Sets command_late_s where every recording has it, records_differ where some have. Of the blocks
-/// of a recording the earliest response counts.
+/// Sets command_late_s where every recording has it, records_differ where some have. The earliest
+/// response of a recording's blocks counts.
 void find_late_commands(const plant_sim::ModelFile& model, const std::vector<Dataset>& records,
                         RecordChecks& checks) {
   std::map<std::string, std::size_t> earliest;
