@@ -165,6 +165,8 @@ void add_corrected_words(const DiagnosisReport& outcome, std::vector<std::string
   constexpr double kSure = 0.1;
   constexpr double kDataSheet_sd = 0.5;
   const selection::Diagnosis& d = outcome.diagnosis;
+  // where physics is missing, values make up for it
+  if (d.verdict == selection::Verdict::unexplained) return;
   for (const estimator::greybox::FreeParameter& p : outcome.prepared->problem.plant_parameters) {
     const auto found =
         std::find_if(d.parameters.begin(), d.parameters.end(),

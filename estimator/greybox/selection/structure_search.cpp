@@ -105,8 +105,7 @@ std::optional<ModelStage> converged_without(const SearchContext& context, const 
 }
 
 /// Rounds until the branch has `most` effects, or has converged to what explains the record; false
-/// when nothing helps any more, or when the
-/// linear estimate of none leaves less than `within_m`.
+/// when nothing helps any more, or when the linear estimate of none leaves less than `within_m`.
 bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pairs_too,
                    std::size_t most = kMostEffects,
                    double within_m = std::numeric_limits<double>::infinity()) {
