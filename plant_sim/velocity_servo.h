@@ -7,10 +7,10 @@
 // gain  m/s per V    tau  time constant, s; 0 is none
 // zeta  damping ratio of a lag of second order with the natural frequency 1 / tau
 // The quasi-static limit of the hydraulic actuator: pressures and mass follow at once. Effects act
-// on the command and on x (deadband, flow_asymmetry, underlap: x stands for the spool position,
-// gain for its travel per volt), and on the reading. There is no end of the stroke: position is
-// relative. Each step with the command held is solved exactly in x; what opening() makes of it is
-// integrated by Gauss's rule of two points.
+// on the command, on gain u (acceleration_limit), on x (deadband, flow_asymmetry, underlap: x
+// stands for the spool position, gain for its travel per volt), and on the reading. There is no end
+// of the stroke: position is relative. Each step with the command held is solved exactly in x; what
+// opening() makes of it is integrated by Gauss's rule of two points.
 #pragma once
 
 #include <array>
@@ -26,8 +26,9 @@ template <class S>
 class VelocityServo {
  public:
   static constexpr const char* kName = "velocity_servo";
-  static constexpr std::array kSites = {effects::Site::command, effects::Site::opening,
-                                        effects::Site::lap, effects::Site::sensor};
+  static constexpr std::array kSites = {effects::Site::command, effects::Site::set_speed,
+                                        effects::Site::opening, effects::Site::lap,
+                                        effects::Site::sensor};
 
   struct Parameters {
     S gain_mps_per_V = 0.05;
@@ -103,7 +104,7 @@ class VelocityServo {
     const S from_m = state.y_m;
     drive_V_ = limits::known_V(u_V);
     drive_V_ = effects.command_V(drive_V_, [&] { return motion(state.drive_mps); });
-    const S goal_mps = parameters.gain_mps_per_V * drive_V_;
+    const S goal_mps = effects.set_mps(parameters.gain_mps_per_V * drive_V_);
     const S gap_mps = state.drive_mps - goal_mps;
     S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_.of_gap);
     S early_mps = gap_mps * early_.of_gap;

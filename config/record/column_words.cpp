@@ -88,7 +88,8 @@ const Words kPositionWords{
     "encoder*", "lvdt",      "travel",    "extension",     "istwert",  "rotation", "posicion",
     "posición", "posizione", "corsa",     "stellung*",     "opening*", "öffnung*", "läge",
     "lageist*", "positie",   "course",    "déplacement"};
-const Words kWeakPositionWords{"x", "output", "ausgang*", "out", "phi", "measured", "ist"};
+const Words kWeakPositionWords{"x",        "output", "ausgang*", "out",  "phi",
+                               "measured", "ist",    "height",   "höhe", "hoehe"};
 const Words kReferenceWords{
     "ref",      "reference*",  "setpoint*", "sp",       "soll*",     "target*",   "demand*",
     "desired",  "nominal*",    "wanted",    "set",      "des",       "sollwert*", "fuehrung*",
@@ -103,6 +104,8 @@ const Words kOtherWords{
     "max",     "model*", "sim*",      "estimat*",  "observer*", "offset",    "status", "tank",
     "diff*",   "delta",  "lag",       "following", "tolerance", "toleranz*", "window", "predict*",
     "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*"};
+/// Words of what a drive with a loop of its own is asked for.
+const Words kSpeedWords{"speed*", "velocity*", "geschw*", "drehzahl*"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
 const Words kPressureWords{"pressure*", "press", "druck*"};
@@ -305,9 +308,13 @@ bool is_spool(const ReadColumn& column) {
 
 bool is_drive_set_point(const ReadColumn& column) {
   const std::string& si = column.text.unit.si;
-  const bool drives = si == "V" || si == "A" || si == "pct" || si == "N" || si == "Nm";
-  return is_reference(column) && drives && may_drive(column) &&
-         !has_word(column.words, kOtherWords) && !has_word(column.words, kPositionWords);
+  const bool electric = si == "V" || si == "A" || si == "pct";
+  const bool commanded = is_reference(column) || has_word(column.words, kCommandWords);
+  const bool speed = electric && commanded && has_word(column.words, kSpeedWords);
+  const bool drives = electric || si == "N" || si == "Nm";
+  const bool other = has_word(column.words, kOtherWords);
+  return (speed || (is_reference(column) && drives && !other)) && may_drive(column) &&
+         !has_word(column.words, kPositionWords);
 }
 
 bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }

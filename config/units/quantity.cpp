@@ -14,8 +14,9 @@ namespace {
 /// "N" of "N", "s2" of "s2", "m3/s" of "m3ps"; "" when it is no unit.
 std::string unit_word(std::string_view word) {
   static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-      {"m3ps", "m3/s"}, {"mps", "m/s"}, {"rad", "rad"}, {"Pa", "Pa"}, {"kg", "kg"},
-      {"Hz", "Hz"},     {"N", "N"},     {"V", "V"},     {"m", "m"},   {"s", "s"}};
+      {"m3ps", "m3/s"}, {"mps2", "m/s2"}, {"mps", "m/s"}, {"rad", "rad"},
+      {"Pa", "Pa"},     {"kg", "kg"},     {"Hz", "Hz"},   {"N", "N"},
+      {"V", "V"},       {"m", "m"},       {"s", "s"}};
   for (const auto& [name, unit] : kUnits) {
     if (word == name) return std::string(unit);
     const bool power = word.size() == name.size() + 1 && word.starts_with(name) &&

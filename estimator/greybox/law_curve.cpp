@@ -237,20 +237,23 @@ MatrixXd covariance_of(const FitDataset& data, const FitSummary& fitted,
   solution.jacobian = fitted.jacobian;
   solution.at_bound = fitted.at_bound;
   const MatrixXd whole = nonlinear::covariance(problem, solution).matrix;
-  std::vector<Index> places;
-  for (const std::string& name : names) {
+  const auto place_of = [&](const std::string& name) -> Index {
     const auto found = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
                                     [&](const FreeParameter& p) { return p.name == name; });
-    if (found == fitted.parameters.end()) return {};
-    places.push_back(found - fitted.parameters.begin());
-  }
-  const MatrixXd some = whole(places, places);
-  MatrixXd scaled = MatrixXd::Zero(some.rows(), some.cols());
-  for (Index i = 0; i < some.rows(); ++i) {
-    for (Index j = 0; j < some.cols(); ++j) {
-      const double sizes = std::sqrt(some(i, i) * some(j, j));
+    return found == fitted.parameters.end() ? -1 : found - fitted.parameters.begin();
+  };
+  const auto count = static_cast<Index>(names.size());
+  std::vector<Index> places;
+  for (const std::string& name : names) places.push_back(place_of(name));
+  MatrixXd scaled = MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    for (Index j = 0; j < count; ++j) {
+      const Index from = places[static_cast<std::size_t>(i)];
+      const Index to = places[static_cast<std::size_t>(j)];
+      if (from < 0 || to < 0) continue;
+      const double sizes = std::sqrt(whole(from, from) * whole(to, to));
       if (!(sizes > 0.0) || std::isnan(errors[i]) || std::isnan(errors[j])) continue;
-      scaled(i, j) = some(i, j) / sizes * errors[i] * errors[j];
+      scaled(i, j) = whole(from, to) / sizes * errors[i] * errors[j];
     }
   }
   return scaled;

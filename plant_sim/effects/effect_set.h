@@ -51,6 +51,15 @@ class EffectSet : public EffectStore<S, E...> {
     return u_V;
   }
 
+  /// Call exactly once per step, with command_V().
+  [[nodiscard]] S set_mps(S asked_mps) {
+    this->template for_each_active<Site::set_speed>(
+        [&]<class T>(Tag<T>, const auto& p, auto& memory) {
+          asked_mps = T::set_mps(p, memory, asked_mps);
+        });
+    return asked_mps;
+  }
+
   /// Call after a reset with the motion that steps begin from.
   template <class Motion>
   void start(Motion&& motion) {

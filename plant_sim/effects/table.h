@@ -2,6 +2,7 @@
 // the valve from top to bottom). Adding an effect: its file, its include and its name in this list.
 #pragma once
 
+#include "plant_sim/effects/acceleration_limit.h"
 #include "plant_sim/effects/backlash.h"
 #include "plant_sim/effects/coupled_slaves.h"
 #include "plant_sim/effects/deadband.h"
@@ -30,29 +31,30 @@
 namespace plant_sim::effects {
 
 template <class S>
-using Effects = EffectSet<S,                 //
-                          TransportDelay,    //
-                          NullBias,          //
-                          ValveHysteresis,   //
-                          DriveSaturation,   //
-                          DriveLag,          //
-                          SpoolRateLimit,    //
-                          Deadband,          //
-                          FlowAsymmetry,     //
-                          Underlap,          //
-                          FlowSaturation,    //
-                          SupplyDroop,       //
-                          InternalLeakage,   //
-                          ExternalLeakage,   //
-                          EntrainedAir,      //
-                          Friction,          //
-                          QuadraticDamping,  //
-                          LoadSpring,        //
-                          LoadForce,         //
-                          ForceRipple,       //
-                          CoupledSlaves,     //
-                          SecondMass,        //
-                          Backlash,          //
+using Effects = EffectSet<S,                  //
+                          TransportDelay,     //
+                          NullBias,           //
+                          ValveHysteresis,    //
+                          AccelerationLimit,  //
+                          DriveSaturation,    //
+                          DriveLag,           //
+                          SpoolRateLimit,     //
+                          Deadband,           //
+                          FlowAsymmetry,      //
+                          Underlap,           //
+                          FlowSaturation,     //
+                          SupplyDroop,        //
+                          InternalLeakage,    //
+                          ExternalLeakage,    //
+                          EntrainedAir,       //
+                          Friction,           //
+                          QuadraticDamping,   //
+                          LoadSpring,         //
+                          LoadForce,          //
+                          ForceRipple,        //
+                          CoupledSlaves,      //
+                          SecondMass,         //
+                          Backlash,           //
                           EncoderEccentricity>;
 
 }  // namespace plant_sim::effects

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "plant_sim/formula/curve_evaluator.h"
 
 namespace plant_sim::formula {
 namespace {
@@ -20,9 +21,13 @@ std::string value_name(std::size_t i) { return fmt::format("f{}", i + 1); }
 
 /// Slope of the curve at point i, an expression of its values.
 std::string slope(const std::vector<double>& x, std::size_t i) {
-  const std::size_t before = i == 0 ? 0 : i - 1;
-  const std::size_t after = std::min(i + 1, x.size() - 1);
-  return fmt::format("({} - {})/{}", value_name(after), value_name(before), x[after] - x[before]);
+  const SlopeWeights weights = slope_weights<double>(x.data(), x.size(), i);
+  const auto part = [](double weight, std::size_t from) {
+    return fmt::format("{}*({} - {})", weight, value_name(from + 1), value_name(from));
+  };
+  if (i == 0) return part(weights.after, 0);
+  const std::string before = part(weights.before, i - 1);
+  return i + 1 == x.size() ? before : fmt::format("({} + {})", before, part(weights.after, i));
 }
 
 /// A number as an operand.

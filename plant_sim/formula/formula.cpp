@@ -81,6 +81,18 @@ void check_signals(const CurveTable& curve, std::vector<std::string> variables,
   if (!curve.times.empty()) check_signal("times", curve.times);
 }
 
+Signal signal_named(const std::string& name) {
+  return static_cast<Signal>(std::find(kSignalNames.begin(), kSignalNames.end(), name) -
+                             kSignalNames.begin());
+}
+
+CurveView curve_of(const Formula& formula) {
+  if (!formula.curve) return {};
+  const CurveTable& table = *formula.curve;
+  return {table.x.data(), table.x.size(), signal_named(table.over), signal_named(table.times),
+          formula.place.chained ? formula.place.first : kSignals};
+}
+
 }  // namespace
 
 const char* interned(const std::string& text) {
@@ -115,6 +127,7 @@ Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
       record_formula(effect.formula, variables, names_of(effect.parameters), where + " formula");
   formula.memory = memory_of(effect, variables, formula.program, where);
   formula.remembers = !effect.memory.empty();
+  formula.curve = effect.curve;
   formula.ranges = {ranges.command_V, ranges.position_m,       ranges.speed_mps,
                     ranges.opening_m, ranges.pressure_Pa,      ranges.pressure_Pa,
                     ranges.flow_m3ps, ranges.acceleration_mps2};
@@ -145,6 +158,7 @@ Formulas::Formulas(std::vector<Formula> formulas)
                       view_of(f.program),
                       view_of(f.memory),
                       f.remembers,
+                      curve_of(f),
                       {}});
     std::copy(f.ranges.begin(), f.ranges.end(), std::begin(views_.back().ranges));
   }

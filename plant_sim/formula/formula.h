@@ -3,9 +3,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "plant_sim/formula/curve_evaluator.h"
 #include "plant_sim/formula/expression_program.h"
 #include "plant_sim/formula/formula_effect.h"
 #include "plant_sim/parameter.h"
@@ -24,6 +26,7 @@ struct Formula {
   ExpressionProgram program;
   ExpressionProgram memory;  ///< dz/dt, where it remembers
   bool remembers = false;
+  std::optional<CurveTable> curve;  ///< evaluated in the place of `program`, which says the same
   std::vector<ParameterInfo> parameters;
   std::array<VariableRange, kSignals> ranges;  ///< one per signal; 0..0 where there is none
   /// Signals whose values the formula or its memory depends on.
@@ -38,6 +41,7 @@ struct FormulaView {
   ExpressionProgramView program;
   ExpressionProgramView memory;
   bool remembers;
+  CurveView curve;
   VariableRange ranges[kSignals];
 };
 

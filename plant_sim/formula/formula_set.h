@@ -65,7 +65,7 @@ class FormulaSet {
       effect.active = !neutral || always;
       if (!effect.active) continue;
       sites_ |= bit(effect.site());
-      effect.run.set_parameters(effect.values.data());
+      effect.set_parameters();
       if (effect.formula.remembers) effect.rate.set_parameters(effect.values.data());
       if (effect.site() == effects::Site::force) effect.find_slopes();
       if (effect.site() == effects::Site::leakage) effect.find_conductance();
@@ -146,7 +146,7 @@ class FormulaSet {
  private:
   struct Effect {
     explicit Effect(const FormulaView& declared)
-        : formula(declared), run(declared.program), rate(declared.memory) {
+        : formula(declared), run(declared.program), curve(declared.curve), rate(declared.memory) {
       values.reserve(declared.program.parameters);
       for (std::size_t i = 0; i < declared.program.parameters; ++i) {
         values.emplace_back(declared.parameters[i].neutral);
@@ -161,6 +161,14 @@ class FormulaSet {
     }
 
     [[nodiscard]] effects::Site site() const { return formula.place.site; }
+
+    void set_parameters() {
+      if (formula.curve.points > 0) {
+        curve.set_values(values.data());
+      } else {
+        run.set_parameters(values.data());
+      }
+    }
 
     /// The formula's value within the guard; `none` where it is not finite.
     [[nodiscard]] S result(Signals<S>& at, const S& none) const {
@@ -215,6 +223,7 @@ class FormulaSet {
 
     FormulaView formula;
     ExpressionEvaluator<S> run;
+    CurveEvaluator<S> curve;      ///< in the place of `run` where the formula is a curve
     ExpressionEvaluator<S> rate;  ///< evaluates dz/dt of the memory
     S memory = 0.0;
     mutable S own = 0.0;  ///< of a chained formula: its own variable when it was last evaluated
@@ -229,7 +238,7 @@ class FormulaSet {
 
     /// The same with the memory that the signals state.
     [[nodiscard]] S guarded(const Signals<S>& at, const S& none) const {
-      const S value = run(at.data());
+      const S value = formula.curve.points > 0 ? curve(at) : run(at.data());
       const S guard = formula.place.guard;
       return select(abs(value) <= S(kFinite), clamp(value, -guard, guard), none);
     }

@@ -151,8 +151,8 @@ TEST(ModelFile, RefusesAnEffectWhoseSiteThePlantLacks) {
     EXPECT_STREQ(
         error.what(),
         "x.toml: [effects.supply_droop]: supply_droop acts on supply, which "
-        "velocity_servo does not have; allowed: effects of its sites command, opening, lap, "
-        "sensor");
+        "velocity_servo does not have; allowed: effects of its sites command, set_speed, opening, "
+        "lap, sensor");
   }
   EXPECT_THROW((void)read(text("force_driven_axis", "deadband")), config::schema::Error);
   // slaves add mass and force: one of the two is not enough

@@ -100,6 +100,35 @@ constexpr std::array kAxisDrift{
     Word{"measurement", "look for a loose mount or a sensor that warms up"},
 };
 
+// A servo is known by its speed alone: what moves it is not said.
+constexpr std::array kServoRecord{
+    Word{"flow",
+         "record the speed that the drive itself measures, with the motor's current or the chamber "
+         "pressures"},
+    Word{"gain", "record the speed that the drive itself measures, and its supply"},
+    Word{"force", "record the motor's current or the chamber pressures"},
+    Word{"measurement", "record the position with a second sensor"},
+    Word{"lag", "record the drive's own speed, which shows a lag ahead of it"},
+};
+
+/// What the plant is driven by: its valve, a motor or, of a servo, either.
+struct Drive {
+  const std::array<Word, 4>& enters;
+  const std::array<Word, 4>& drift;
+  const std::array<Word, 5>& record;
+  const char* unlocated;  ///< what to record where nothing tells the place
+};
+
+Drive drive_of(const std::string& plant) {
+  if (has_site(plant, "set_speed"))
+    return {kAxisEnters, kAxisDrift, kServoRecord,
+            "the speed that the drive itself measures, with the motor's current or the chamber "
+            "pressures."};
+  if (has_site(plant, "opening"))
+    return {kEnters, kDrift, kRecord, "the chamber pressures and the spool position."};
+  return {kAxisEnters, kAxisDrift, kAxisRecord, "the motor's current and the force on the load."};
+}
+
 const char* of(const auto& words, const std::string& key) {
   for (const Word& word : words) {
     if (key == word.key) return word.words;
@@ -120,6 +149,9 @@ std::string formula_words(const selection::Localisation& where, const std::strin
   } else if (where.site == "measurement") {
     site = "sensor";
     if (where.variable == "y") variable = "y_m";
+  } else if (where.variable == "y") {
+    site = "opening";
+    variable = "y_m";
   } else if (where.variable == "u") {
     site = "command";
     variable = "u_V";
@@ -134,12 +166,12 @@ std::string formula_words(const selection::Localisation& where, const std::strin
 }
 
 /// Measurements that would tell the sites of a place apart, each once.
-std::string words_to_locate(const selection::Localisation& where, bool axis) {
+std::string words_to_locate(const selection::Localisation& where, const Drive& drive) {
   std::vector<std::string> sites{where.site};
   sites.insert(sites.end(), where.or_sites.begin(), where.or_sites.end());
   std::vector<std::string> measured;
   for (const std::string& site : sites) {
-    const std::string words = of(axis ? kAxisRecord : kRecord, site);
+    const std::string words = of(drive.record, site);
     if (std::find(measured.begin(), measured.end(), words) == measured.end()) {
       measured.push_back(words);
     }
@@ -252,19 +284,16 @@ std::string words_for_changes(const std::vector<selection::ParameterChange>& cha
 
 std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                   const std::string& plant) {
-  const bool axis = !has_site(plant, "opening");
+  const Drive drive = drive_of(plant);
   if (where.empty() || where.front().explained_ratio < kNamesACause) {
     return std::string("No effect of the library explains the remaining error; record ") +
-           (axis ? "the motor's current and the force on the load."
-                 : "the chamber pressures and the spool position.");
+           drive.unlocated;
   }
   const selection::Localisation& first = where.front();
-  if (!first.or_sites.empty()) return words_to_locate(first, axis);
+  if (!first.or_sites.empty()) return words_to_locate(first, drive);
   std::string text = std::string("For an error that goes ") + of(kVariables, first.variable) +
-                     " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + ": ";
-  const auto& drift = axis ? kAxisDrift : kDrift;
-  const auto& record = axis ? kAxisRecord : kRecord;
-  text += first.variable == "time" ? of(drift, first.site) : of(record, first.site);
+                     " and enters " + of(drive.enters, first.site) + ": ";
+  text += first.variable == "time" ? of(drive.drift, first.site) : of(drive.record, first.site);
   const std::string formula = formula_words(first, plant);
   if (!formula.empty()) text += ", " + formula;
   return text + ".";

@@ -37,15 +37,6 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
   return names;
 }
 
-std::string undetermined_words(const selection::Diagnosis& d) {
-  if (d.ambiguous.empty()) {
-    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) + ".";
-  }
-  const std::vector<std::string> sure = undisputed(d);
-  return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
-         (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
-}
-
 /// The effect with its value, and the names that are as good.
 std::string effect_or_rivals(const selection::Diagnosis& d, const std::string& effect) {
   std::string text = effect_words(d, effect);
@@ -60,6 +51,38 @@ std::string effect_or_rivals(const selection::Diagnosis& d, const std::string& e
 std::string missing_words(const selection::Diagnosis& d) {
   const auto text = [&](const std::string& effect) { return effect_or_rivals(d, effect); };
   return "Missing: " + config::schema::joined_by(d.established(), text, "; ") + ".";
+}
+
+std::vector<std::string> possible_names(const selection::Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const selection::PossibleEffect& one : d.possible) names.push_back(one.effect);
+  return names;
+}
+
+std::string undetermined_words(const selection::Diagnosis& d) {
+  if (d.ambiguous.empty() && d.established().empty())
+    return "Undetermined: perhaps missing: " + effects_words(d, d.missing) + ".";
+  if (d.ambiguous.empty()) {
+    return missing_words(d) + " Perhaps missing too: " + effects_words(d, possible_names(d)) + ".";
+  }
+  const std::vector<std::string> sure = undisputed(d);
+  return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
+         (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
+}
+
+/// "cubic_damping, damping that grows with the cube of the speed: force = ...".
+std::string law_words(const selection::Law& law) {
+  const plant_sim::formula::FormulaSite* site =
+      plant_sim::formula::find_formula_site(law.effect.site);
+  return law.effect.what + ": " + (site == nullptr ? law.effect.site : site->result) + " = " +
+         law.effect.equation();
+}
+
+/// The laws that come near to what is missing; empty: there are none.
+std::string approximation_words(const selection::Diagnosis& d) {
+  return d.laws.empty()
+             ? ""
+             : " Closest to it: " + config::schema::joined_by(d.laws, law_words, "; and ") + ".";
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {
@@ -85,18 +108,11 @@ std::string unexplained_words(const selection::Diagnosis& d) {
     return "Unexplained: " + rest + ", and " +
            (d.effects_only ? "none of the effects that were to be tried"
                            : "no effect of the library") +
-           " explains it.";
+           " explains it." + approximation_words(d);
   }
   return "Incomplete: " + config::schema::listed(established) +
-         (established.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
-}
-
-/// "cubic_damping, damping that grows with the cube of the speed: force = ...".
-std::string law_words(const selection::Law& law) {
-  const plant_sim::formula::FormulaSite* site =
-      plant_sim::formula::find_formula_site(law.effect.site);
-  return law.effect.what + ": " + (site == nullptr ? law.effect.site : site->result) + " = " +
-         law.effect.equation();
+         (established.size() > 1 ? " are" : " is") + " missing, but " + rest + "." +
+         approximation_words(d);
 }
 
 std::string learned_words(const selection::Diagnosis& d) {

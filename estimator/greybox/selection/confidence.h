@@ -46,7 +46,8 @@ struct PossibleEffect {
 [[nodiscard]] std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis);
 
 /// Sets `possible`. Where no effect of the verdict `missing` is established it is `undetermined`;
-/// where a law of the verdict `learned` is not, it is `unexplained`.
+/// where a law of the verdict `learned` is not, `undetermined` too, or `unexplained` where the
+/// error is above the floor.
 void weigh_doubts(Diagnosis& diagnosis);
 
 }  // namespace estimator::greybox::selection

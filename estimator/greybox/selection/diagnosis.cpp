@@ -219,9 +219,11 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
                          const ModelStage& likeliest, Diagnosis& result) {
   if (!search.cancelled()) (void)find_record_differences(search, first, result);
   if (result.verdict == Verdict::unexplained && !search.cancelled()) {
+    std::optional<LawSearch> approximate;
     if (!date_changes(search, first, likeliest, result) &&
-        !learn_laws(search, first, likeliest, result)) {
-      (void)date_changes(search, first, likeliest, result, ChangesSought::after_laws);
+        !learn_laws(search, first, likeliest, approximate, result) &&
+        !date_changes(search, first, likeliest, result, ChangesSought::after_laws) && approximate) {
+      approximate_by_laws(search, first, *approximate, result);
     }
   }
   if (result.verdict == Verdict::nothing_missing && !search.cancelled() &&

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "estimator/greybox/pressure_scale.h"
 #include "estimator/greybox/selection/innovation_jacobian.h"
@@ -13,6 +14,9 @@
 
 namespace estimator::greybox::selection {
 namespace {
+
+/// Share of the error that the search left, beyond which a free run's parameters are no better.
+constexpr double kBends = 1.5;
 
 /// `errors` are those of the search values by the fit's own residual. The scatter between halves of
 /// the record and the error of the integration step are added.
@@ -52,6 +56,19 @@ FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& sta
   return rms(other.residual_m, weights) < rms(best.residual_m, weights) ? other : best;
 }
 
+/// True where a free run has followed a drift by bending the motion: it gives up an effect of the
+/// search, or leaves much more under the observer than this, or more than the file does.
+bool bends_motion(const SearchContext& context, const StructureSearch& search,
+                  const FitSummary& run) {
+  const FitSummary& searched = search.final.fitted;
+  for (std::size_t i = 0; i < run.parameters.size(); ++i) {
+    const bool of_effect = run.parameters[i].name.find('.') != std::string::npos;
+    if (of_effect && run.at_bound[i] != 0 && searched.at_bound[i] == 0) return true;
+  }
+  return simulated(context, run).validation_rms_m >
+         std::min(kBends * searched.validation_rms_m, search.nominal_rms_m);
+}
+
 }  // namespace
 
 void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
@@ -66,9 +83,8 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   result.final = context.cancelled() ? stage.fitted
                  : with_observer     ? observed()
                                      : fit_free_run(context, all);
-  // a free run that follows a drift by bending the motion leaves more than the file does
   if (!with_observer && !context.cancelled() &&
-      simulated(context, result.final).validation_rms_m > result.search.nominal_rms_m) {
+      bends_motion(context, result.search, result.final)) {
     result.final = observed();
     with_observer = true;
   }

@@ -43,6 +43,7 @@ class Dictionary {
   std::vector<Law> laws(LawChoice choice) {
     add_forces();
     add_openings();
+    add_yielding_speeds();
     add_commands();
     add_leakage();
     add_readings();
@@ -87,6 +88,12 @@ class Dictionary {
             place_m(rig_.centre_m)};
   }
 
+  [[nodiscard]] FormulaEffect::Parameter arm() const {
+    const double y = rig_.length_m;
+    return {"arm_m",           "length of the arm", rounded(0.3 * y),
+            rounded(30.0 * y), rounded(2.0 * y),    rounded(4.0 * y)};
+  }
+
   void add_forces() {
     const double force_N = kTypicalForce * rig_.force_N;
     const double v = rig_.speed_mps;
@@ -127,11 +134,7 @@ class Dictionary {
         {size("stiffness_N_per_m", force_N / y, Sign::positive), rest()}, {"y"});
     add("pendulum", "weight on an arm, the position an arc of it", "force",
         "force_N * sin((y_m - rest_m) / arm_m)",
-        {size("force_N", force_N, Sign::both),
-         rest(),
-         {"arm_m", "length of the arm", rounded(0.3 * y), rounded(30.0 * y), rounded(2.0 * y),
-          rounded(4.0 * y)}},
-        {"y"});
+        {size("force_N", force_N, Sign::both), rest(), arm()}, {"y"});
   }
 
   /// A length, speed or other width of a law's bend.
@@ -186,10 +189,22 @@ class Dictionary {
         {"y", "direction"});
   }
 
+  /// Gains that fall with the opening, or the command of a plant that has none.
   void add_saturations() {
     const double per_V = opening_per_V();
-    if (!(per_V > 0.0)) return;
-    const double full = rounded(per_V * rig_.most_command_V);
+    const bool opens = per_V > 0.0;
+    const char* const site = opens ? "opening" : "command";
+    const std::string own = opens ? "x_m" : "u_V";
+    const double full = rounded((opens ? per_V : 1.0) * rig_.most_command_V);
+    const auto add_soft = [&](const char* name, const char* what, const std::string& formula) {
+      add(name, what, site, fmt::format(fmt::runtime(formula), own, full),
+          {size("bend_ratio", 5.0 * kTypicalRatio, Sign::positive, 20.0)}, {"u"});
+    };
+    add_soft("root_saturation", "gain that falls as the root of a square",
+             "{0} / sqrt(1 + (bend_ratio * {0} / {1})^2)");
+    add_soft("tanh_saturation", "gain that saturates as a hyperbolic tangent",
+             "if(bend_ratio > 0, {1} * tanh(bend_ratio * {0} / {1}) / max(bend_ratio, 1e-9), {0})");
+    if (!opens) return;
     const auto add_one = [&](const char* name, const char* what, const std::string& side) {
       add(name, what, "opening",
           fmt::format("x_m / (1 + loss_ratio * max({}, 0) / {})", side, full),
@@ -261,6 +276,18 @@ class Dictionary {
           rounded(1.5 * way_m), rounded(2.0 * way_m)},
          rest()},
         {"y"});
+  }
+
+  /// Loads that the loop of a servo yields to: its speed changes as their force does.
+  void add_yielding_speeds() {
+    if (model_.plant != "velocity_servo") return;
+    const double speed_mps = kTypicalRatio * rig_.speed_mps;
+    const double y = rig_.length_m;
+    add("pendulum_speed", "speed that a weight on an arm takes, the position an arc of it",
+        "opening", "x_m + speed_mps * sin((y_m - rest_m) / arm_m)",
+        {size("speed_mps", speed_mps, Sign::both), rest(), arm()}, {"y"});
+    add("spring_speed", "speed that a spring takes", "opening", "x_m - rate_per_s * (y_m - rest_m)",
+        {size("rate_per_s", speed_mps / y, Sign::both), rest()}, {"y"});
   }
 
   void add_commands() {

@@ -6,42 +6,15 @@
 namespace estimator::greybox::selection {
 namespace {
 
-constexpr std::size_t kMostLaws = 2;
 /// The sizes of laws and of the effects beside them are scaled to the rig: half as many, each
 /// within the range over which the linear estimate may move it, cover what is plausible.
 constexpr Eigen::Index kLawSizes = kTrialSizes / 2;
-
-SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,
-                        const std::vector<std::string>& effects) {
-  SearchContext result = context;
-  DiagnosisProblem& problem = result.problem;
-  problem.trial_sizes = kLawSizes;
-  for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
-  // the library's effects with the sizes that are typical of this rig
-  std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
-    return std::find(effects.begin(), effects.end(), effect.name) == effects.end();
-  });
-  for (const plant_sim::EffectInfo& effect : absent_effects(problem.model)) {
-    const bool law = std::any_of(laws.begin(), laws.end(),
-                                 [&](const Law& one) { return one.effect.name == effect.name; });
-    if (law) problem.candidate_effects.push_back(effect);
-  }
-  return result;
-}
 
 std::vector<Law> laws_at(const SearchContext& context, const std::string& site, LawChoice choice) {
   std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data, choice);
   if (!site.empty())
     std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
   return dictionary;
-}
-
-/// The stage with the laws of `search` as its candidates.
-InnovationStage with_candidates(InnovationStage stage, const SearchContext& search) {
-  stage.context.problem.model = search.problem.model;
-  stage.context.problem.candidate_effects = search.problem.candidate_effects;
-  stage.context.problem.trial_sizes = search.problem.trial_sizes;
-  return stage;
 }
 
 /// False where no law is better by kRivals_nats in the place of what was found: beside it a law is
@@ -65,6 +38,41 @@ bool promises(const SearchContext& search, const InnovationSearch& named) {
 }
 
 }  // namespace
+
+SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,
+                        const std::vector<std::string>& effects) {
+  SearchContext result = context;
+  DiagnosisProblem& problem = result.problem;
+  problem.trial_sizes = kLawSizes;
+  for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
+  // the library's effects with the sizes that are typical of this rig
+  std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
+    return std::find(effects.begin(), effects.end(), effect.name) == effects.end();
+  });
+  for (const plant_sim::EffectInfo& effect : absent_effects(problem.model)) {
+    const bool law = std::any_of(laws.begin(), laws.end(),
+                                 [&](const Law& one) { return one.effect.name == effect.name; });
+    if (law) problem.candidate_effects.push_back(effect);
+  }
+  return result;
+}
+
+InnovationStage with_candidates(InnovationStage stage, const SearchContext& search) {
+  stage.context.problem.model = search.problem.model;
+  stage.context.problem.candidate_effects = search.problem.candidate_effects;
+  stage.context.problem.trial_sizes = search.problem.trial_sizes;
+  return stage;
+}
+
+std::vector<Law> laws_among(const std::vector<Law>& laws, const std::vector<std::string>& effects) {
+  std::vector<Law> among;
+  for (const std::string& name : effects) {
+    const auto law = std::find_if(laws.begin(), laws.end(),
+                                  [&](const Law& one) { return one.effect.name == name; });
+    if (law != laws.end()) among.push_back(*law);
+  }
+  return among;
+}
 
 bool rubs(const SearchContext& context, const std::vector<std::string>& effects) {
   plant_sim::ModelFile model = context.problem.model;
@@ -118,23 +126,13 @@ std::optional<LawSearch> search_laws(const SearchContext& context, const ModelSt
     std::erase_if(dictionary, [](const Law& law) { return law.effect.site == "dry_friction"; });
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
-  const auto laws_of = [&](const std::vector<std::string>& added) {
-    std::vector<Law> laws;
-    for (const std::string& name : added) {
-      const auto law = std::find_if(dictionary.begin(), dictionary.end(),
-                                    [&](const Law& one) { return one.effect.name == name; });
-      if (law != dictionary.end()) laws.push_back(*law);
-    }
-    return laws;
-  };
   const auto ends_at = [&](const InnovationStage& stage, double inexact_nats) {
-    return laws_of(stage.model.added).size() >= kMostLaws &&
+    return laws_among(dictionary, stage.model.added).size() >= kMostLaws &&
            leaves_much_physics(stage, inexact_nats);
   };
   search.innovations = search_innovations(search.context, first, {}, {most_effects, ends_at});
   const InnovationSearch& found = search.innovations;
-  if (found.ended_early || found.physics_missing()) return {};
-  search.laws = laws_of(found.final.model.added);
+  search.laws = laws_among(dictionary, found.final.model.added);
   if (search.laws.empty() || search.laws.size() > kMostLaws) return {};
   return search;
 }

@@ -16,7 +16,27 @@ struct LawSearch {
   ModelStage first;
   InnovationSearch innovations;
   std::vector<Law> laws;  ///< those among the final model's effects, in the order added
+
+  /// True where laws and effects leave nothing but noise and a disturbance.
+  [[nodiscard]] bool explains_record() const {
+    return !innovations.ended_early && !innovations.physics_missing();
+  }
 };
+
+/// The context with the laws declared in its model; its candidates are these and those of the
+/// library's `effects` that it has.
+[[nodiscard]] SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,
+                                      const std::vector<std::string>& effects);
+
+/// The stage with the candidates of `search`.
+[[nodiscard]] InnovationStage with_candidates(InnovationStage stage, const SearchContext& search);
+
+/// Most laws of one model.
+inline constexpr std::size_t kMostLaws = 2;
+
+/// Those of the laws that are among the effects, in the order of these.
+[[nodiscard]] std::vector<Law> laws_among(const std::vector<Law>& laws,
+                                          const std::vector<std::string>& effects);
 
 /// True where the model has a friction or one of the effects is: laws of its level mean something.
 [[nodiscard]] bool rubs(const SearchContext& context, const std::vector<std::string>& effects);
@@ -41,7 +61,7 @@ struct LawSearch {
 [[nodiscard]] bool law_competes(const SearchContext& context, const std::string& site,
                                 const InnovationSearch& named);
 
-/// None where one or two laws leave physics unexplained, or none is of use. `first`: the model as
+/// None where no law, or more than two, are of use. `first`: the model as
 /// given, fitted with the weak observer. `site`: where laws are looked for; empty: everywhere.
 /// `effects` of the library compete with them; `choice` of laws; `most_effects` of both together
 /// are tried.

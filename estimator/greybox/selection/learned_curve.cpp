@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/selection/beside_curve.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/greybox/selection/settled_memo.h"
@@ -40,10 +41,13 @@ constexpr double kCurveOfFriction = 0.3;
 constexpr double kInexactCurves = 0.02;
 /// Standard deviation of a curve's values about zero, in typical sizes.
 constexpr double kPriorSizes = 5.0;
+/// Share of what a curve leaves to others that one candidate beside it has to promise.
+constexpr double kMostOfRest = 0.5;
 /// Lag of a curve behind another model, and its share of what that explains, that more points and
 /// convergence do not make up for.
 constexpr double kFarBehind_nats = 200.0;
 constexpr double kShareOfBest = 0.5;
+constexpr const char* kFrictionLevel = "dry_friction";
 /// Largest value of a curve over its typical one.
 constexpr double kMostOfCurve = 100.0;
 
@@ -172,6 +176,7 @@ struct Attempt {
   FormulaEffect effect;
   SearchContext context;
   InnovationStage stage;
+  bool is_not_alone = false;  ///< more points leave hardly less: something else is missing too
 };
 
 /// The stage with the curve, which begins at zero.
@@ -187,6 +192,9 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
     if (speed_mps > 0.0) own[i].lower = 0.0;
     if (speed_mps < 0.0) own[i].upper = 0.0;
   }
+  // a rise of the whole level is the friction's: the curve is none in the middle
+  if (place.site == kFrictionLevel)
+    own.erase(own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2));
   // what a curve shares with the model's own parameters, a slope with a gain, is the model's
   for (FreeParameter& p : own) p.prior_sd = kPriorSizes;
   append(all, {own, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(own.size()))});
@@ -222,7 +230,7 @@ std::vector<Attempt> first_attempts(const SearchContext& context, const Innovati
   }
   // the score test knows no friction whose level changes: gains and drags stand in for it
   if (rubs(context, stage.model.added)) {
-    const Place place{"dry_friction", "y_m", "", "y", kCurveOfFriction};
+    const Place place{kFrictionLevel, "y_m", "", "y", kCurveOfFriction};
     if (std::optional<Attempt> attempt = attempt_at(context, place, kFirstPoints))
       attempts.push_back(std::move(*attempt));
   }
@@ -273,15 +281,16 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   };
   try_counts(kFurtherPoints);
   const InnovationStage& best = attempts.front().stage;
-  if (leaves_much_physics(best, 0.0) && largest_curve_nats(best) > kHardlyLess * first_left_nats) {
-    return {};
-  }
+  const bool is_not_alone =
+      leaves_much_physics(best, 0.0) && largest_curve_nats(best) > kHardlyLess * first_left_nats;
   std::size_t most = std::max(kFurtherPoints);
-  while (most < kMostPoints && !context.cancelled() && points(attempts.front()) == most) {
+  while (!is_not_alone && most < kMostPoints && !context.cancelled() &&
+         points(attempts.front()) == most) {
     most *= 2;
     try_counts({most});
   }
   if (context.cancelled()) return {};
+  attempts.front().is_not_alone = is_not_alone;
   return std::move(attempts.front());
 }
 
@@ -296,40 +305,95 @@ bool leaves_too_much(const Attempt& curve, const InnovationStage& without) {
   return lines.empty() || lines.front().gain_nats < largest_curve_nats(curve.stage);
 }
 
-}  // namespace
+struct Learned {
+  LawSearch search;
+  bool alone = true;  ///< it leaves little to others
+};
 
-std::optional<LawSearch> search_curve(const SearchContext& with_holdouts, const ModelStage& base) {
+/// The likeliest curve beside the base, which may leave something to effects or laws beside it.
+std::optional<Learned> curve_beside(const SearchContext& with_holdouts, const ModelStage& base) {
   const SearchContext context = without_holdouts(with_holdouts);
   const SimulationWidth width = wide(context.options.threads);
   const InnovationStage stage = settled(context, base, {}, Settling::fully, width);
   if (!std::isfinite(stage.minus_two_log) || context.cancelled()) return {};
   std::optional<Attempt> best = likeliest(context, stage);
-  if (!best || leaves_too_much(*best, stage)) return {};
+  if (!best) return {};
+  Learned learned{{best->context, base, {}, {{best->effect, {best->place.variable}}}},
+                  !best->is_not_alone && !leaves_too_much(*best, stage)};
+  learned.search.context.problem.data = with_holdouts.problem.data;
+  learned.search.context.problem.candidate_effects.clear();
+  InnovationSearch& search = learned.search.innovations;
+  search.final = std::move(best->stage);
+  if (!learned.alone && !(promised_beside_nats(with_holdouts, learned.search) >
+                          kMostOfRest * largest_curve_nats(search.final))) {
+    return {};
+  }
   InnovationStage found =
-      settled(best->context, best->stage.model, best->stage.noise, Settling::fully, width);
-  if (!(found.minus_two_log < best->stage.minus_two_log)) found = std::move(best->stage);
-  if (!(penalised(found) < penalised(stage) - 2.0 * kEvidence_nats)) return {};
-  LawSearch search{best->context, base, {}, {{best->effect, {best->place.variable}}}};
-  search.context.problem.data = with_holdouts.problem.data;
-  search.context.problem.candidate_effects.clear();
-  search.innovations.before = stage;
+      settled(best->context, search.final.model, search.final.noise, Settling::fully, width);
+  if (found.minus_two_log < search.final.minus_two_log) search.final = std::move(found);
+  if (!(penalised(search.final) < penalised(stage) - 2.0 * kEvidence_nats)) return {};
+  search.before = stage;
   InnovationCandidate candidate;
   candidate.effect = best->effect.name;
   candidate.settled = true;
-  candidate.penalty_nats = penalty_nats(found.model.fitted, stage.model.fitted);
-  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(found));
-  candidate.fitted = found.model.fitted;
+  candidate.penalty_nats = penalty_nats(search.final.model.fitted, stage.model.fitted);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(search.final));
+  candidate.fitted = search.final.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
-  InnovationRound round{stage.model, {candidate}, true};
+  search.gains_nats[candidate.effect] = candidate.gain_nats;
+  search.inexact_nats = kInexactCurves * candidate.gain_nats;
+  InnovationRound round{stage.model, {std::move(candidate)}, true};
   round.before.fitted.jacobian.resize(0, 0);
-  search.innovations.gains_nats[candidate.effect] = candidate.gain_nats;
-  search.innovations.rounds.push_back(std::move(round));
-  add_lines(best->context, search.innovations, found);
-  search.innovations.inexact_nats += kInexactCurves * candidate.gain_nats;
-  search.innovations.final = std::move(found);
-  weigh_remainder(best->context, search.innovations);
-  if (search.innovations.physics_missing()) return {};
-  return search;
+  search.rounds.push_back(std::move(round));
+  return learned;
+}
+
+/// The curve with spectral lines; none where it leaves physics.
+std::optional<LawSearch> with_lines(Learned learned) {
+  if (!learned.alone) return {};
+  LawSearch& result = learned.search;
+  InnovationSearch& search = result.innovations;
+  const double inexact_nats = search.inexact_nats;
+  const SearchContext context = without_holdouts(result.context);
+  add_lines(context, search, search.final);
+  search.inexact_nats += inexact_nats;
+  weigh_remainder(context, search);
+  if (search.physics_missing()) return {};
+  return std::move(result);
+}
+
+/// What was found beside the curve, and the curve anew beside that: through as many points as it
+/// needs there.
+std::optional<LawSearch> with_beside(const LawSearch& learned, const BesideCurve& beside) {
+  std::optional<Learned> again = curve_beside(beside.context, beside.without_curve.model);
+  if (!again) return {};
+  InnovationSearch& search = again->search.innovations;
+  search.before = learned.innovations.before;
+  const auto put_before = [&](const std::vector<InnovationRound>& rounds) {
+    search.rounds.insert(search.rounds.begin(), rounds.begin(), rounds.end());
+  };
+  put_before(beside.innovations.rounds);
+  put_before(learned.innovations.rounds);
+  search.gains_nats.insert(beside.innovations.gains_nats.begin(),
+                           beside.innovations.gains_nats.end());
+  again->search.context.problem.candidate_effects = beside.context.problem.candidate_effects;
+  again->search.laws.insert(again->search.laws.end(), beside.laws.begin(), beside.laws.end());
+  return with_lines(std::move(*again));
+}
+
+}  // namespace
+
+std::optional<LawSearch> search_curve(const SearchContext& context, const ModelStage& base) {
+  std::optional<Learned> learned = curve_beside(context, base);
+  if (!learned) return {};
+  const double evidence_nats = kEvidence_nats + learned->search.innovations.inexact_nats;
+  if (promised_beside_nats(context, learned->search) > evidence_nats) {
+    const std::optional<BesideCurve> beside = seek_beside_curve(context, learned->search);
+    if (beside) {
+      if (std::optional<LawSearch> result = with_beside(learned->search, *beside)) return result;
+    }
+  }
+  return with_lines(std::move(*learned));
 }
 
 }  // namespace estimator::greybox::selection

@@ -23,6 +23,8 @@ constexpr std::size_t kBeforeLaws = 2;
 /// Share of the error of named effects that a curve in their place may leave in a slow log: its
 /// many knots follow what the command does between the samples, too.
 constexpr double kCurveForNames = 0.8;
+/// Share of the error that is left, below which laws that do not explain the record are of use.
+constexpr double kApproximates = 0.5;
 /// Most laws and effects together that an early search tries.
 constexpr std::size_t kMostEarly = 3;
 
@@ -31,6 +33,27 @@ std::string class_of(const Law& law) {
   if (law.effect.site == "force" || law.effect.site == "dry_friction") return "force";
   if (law.effect.site == "sensor") return "measurement";
   return law.effect.site == "leakage" || law.effect.site == "flow" ? "flow" : "gain";
+}
+
+/// Sets what a diagnosis that ends at laws says of them.
+void state_laws(const SearchContext& context, const LawSearch& found, const Diagnosis& before,
+                Diagnosis& learned) {
+  learned.laws = found.laws;
+  std::vector<Localisation> where;
+  const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
+  for (const Law& law : found.laws)
+    where.push_back({class_of(law), law.variables.front(), explained});
+  for (const Localisation& other : before.whole) {
+    const bool known = std::any_of(where.begin(), where.end(), [&](const Localisation& one) {
+      return one.site == other.site && one.variable == other.variable;
+    });
+    if (!known) where.push_back(other);
+  }
+  learned.where = std::move(where);
+  learned.where_is_whole = true;
+  plant_sim::ModelFile model = context.problem.model;
+  for (const Law& law : found.laws) model.declare(law.effect, "dictionary of laws");
+  learned.better = with_values(model, learned.final);
 }
 
 /// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
@@ -50,22 +73,7 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   }
   if (learned.verdict == Verdict::unexplained) return false;
   learned.verdict = Verdict::learned;
-  learned.laws = found.laws;
-  std::vector<Localisation> where;
-  const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
-  for (const Law& law : found.laws)
-    where.push_back({class_of(law), law.variables.front(), explained});
-  for (const Localisation& other : before.whole) {
-    const bool known = std::any_of(where.begin(), where.end(), [&](const Localisation& one) {
-      return one.site == other.site && one.variable == other.variable;
-    });
-    if (!known) where.push_back(other);
-  }
-  learned.where = std::move(where);
-  learned.where_is_whole = true;
-  plant_sim::ModelFile model = context.problem.model;
-  for (const Law& law : found.laws) model.declare(law.effect, "dictionary of laws");
-  learned.better = with_values(model, learned.final);
+  state_laws(context, found, before, learned);
   result = std::move(learned);
   return true;
 }
@@ -101,15 +109,20 @@ bool take_better(const SearchContext& context, const ModelStage& first,
 }
 
 /// Seeks laws beside the effects and takes them as take_better does, where `accepts` allows it;
-/// where it does not take several, fewer.
+/// where it does not take several, fewer. Sets those that leave physics unexplained,
+/// `approximate`.
 template <class Accepts>
 bool seek_laws(const SearchContext& context, const ModelStage& first,
                const std::vector<std::string>& effects, LawChoice choice, std::size_t most_effects,
-               const Accepts& accepts, Diagnosis& result) {
+               const Accepts& accepts, std::optional<LawSearch>& approximate, Diagnosis& result) {
   while (most_effects > 0) {
     const std::optional<LawSearch> found =
         search_laws(context, first, "", effects, choice, most_effects);
-    if (!found || !accepts(found->innovations.final)) return false;
+    if (!found) return false;
+    if (!found->explains_record() || !accepts(found->innovations.final)) {
+      approximate = found;
+      return false;
+    }
     if (take_better(context, first, found, result)) return true;
     if (found->laws.size() < 2) return false;
     most_effects = found->innovations.final.model.added.size() - 1;
@@ -135,7 +148,7 @@ double most_error_ratio(const Diagnosis& learned, const Diagnosis& before, bool 
 }
 
 bool learn_laws(const SearchContext& context, const ModelStage& first, const ModelStage& likeliest,
-                Diagnosis& result) {
+                std::optional<LawSearch>& approximate, Diagnosis& result) {
   const ModelStage named = result.search.final;
   const bool same = std::is_permutation(named.added.begin(), named.added.end(),
                                         likeliest.added.begin(), likeliest.added.end());
@@ -145,7 +158,7 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, const Mod
   }
   if (seek_laws(
           context, first, effects, LawChoice::unexplained, kMostInnovationEffects,
-          [](const InnovationStage&) { return true; }, result)) {
+          [](const InnovationStage&) { return true; }, approximate, result)) {
     return true;
   }
   // a curve is more than a formula has to say: it comes last
@@ -155,6 +168,19 @@ bool learn_laws(const SearchContext& context, const ModelStage& first, const Mod
            take_better(context, first, search_curve(context, base), result);
   };
   return beside(named) || (!same && beside(likeliest));
+}
+
+void approximate_by_laws(const SearchContext& context, const ModelStage& first,
+                         const LawSearch& found, Diagnosis& result) {
+  const FitSummary run = simulated(found.context, found.innovations.final.model.fitted);
+  const double enough_m = kApproximates * result.rms_after_m;
+  if (context.cancelled() || !(run.validation_rms_m < enough_m)) return;
+  Diagnosis approximated = begun(result);
+  conclude(found.context, found.context, first, found.innovations, approximated);
+  if (!(approximated.rms_after_m < enough_m)) return;
+  approximated.verdict = Verdict::unexplained;
+  state_laws(context, found, result, approximated);
+  result = std::move(approximated);
 }
 
 bool may_learn_early(const SearchContext& context, const InnovationStage& stage,
@@ -179,8 +205,9 @@ bool learn_law_early(const SearchContext& context, const ModelStage& first,
     named.whole = places_of(context, first);
     return true;
   };
+  std::optional<LawSearch> approximate;
   if (!seek_laws(context, first, stage.model.added, LawChoice::beside_effects, kMostEarly,
-                 is_likelier, named)) {
+                 is_likelier, approximate, named)) {
     return false;
   }
   result = std::move(named);
@@ -205,7 +232,8 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   const std::optional<LawSearch> found =
       search_laws(context, first, site, several ? added : std::vector<std::string>(),
                   LawChoice::against_effects, std::min(added.size() + 1, kMostInnovationEffects));
-  return found && found->innovations.final.model.added.size() <= added.size() &&
+  return found && found->explains_record() &&
+         found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);
 }

@@ -1,8 +1,10 @@
 // Diagnoses by laws of the dictionary in the place of effects.
 #pragma once
 
+#include <optional>
+
 #include "estimator/greybox/selection/diagnosis.h"
-#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/law_search.h"
 
 namespace estimator::greybox::selection {
 
@@ -15,9 +17,16 @@ namespace estimator::greybox::selection {
 
 /// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
 /// They stand alone or beside the effects of `result`, or of the model that the innovations chose,
-/// `likeliest`. False: `result` is as before.
+/// `likeliest`. False: `result` is as before, and `approximate` are laws, if any, beside which
+/// physics is missing still.
 [[nodiscard]] bool learn_laws(const SearchContext& context, const ModelStage& first,
-                              const ModelStage& likeliest, Diagnosis& result);
+                              const ModelStage& likeliest, std::optional<LawSearch>& approximate,
+                              Diagnosis& result);
+
+/// Concludes with laws that do not explain the record where they leave much less than `result`, in
+/// which nothing does: the verdict stays, the better model has them.
+void approximate_by_laws(const SearchContext& context, const ModelStage& first,
+                         const LawSearch& found, Diagnosis& result);
 
 /// True for a single record where a law of the level of the stage's friction promises more than a
 /// remainder, any effect and any change in time; or where, beside several effects, a curve over the

@@ -80,7 +80,8 @@ TEST(Proposals, OfACommandNameNoLoad) {
 
 TEST(Proposals, PreferASetPointWithADrivesUnitToNone) {
   for (const char* command :
-       {"Set voltage [V]", "Virtual input [V]", "Sollkraft [N]", "Torque setpoint [Nm]"}) {
+       {"Set voltage [V]", "Virtual input [V]", "Sollkraft [N]", "Torque setpoint [Nm]",
+        "Speed command [%]", "Drehzahl-Sollwert [V]"}) {
     EXPECT_THAT(error_of(std::string("Time [s],Foo,") + command +
                          ",Position [mm]\n0,1,4,2\n1,2,5,3\n2,1,6,2\n"),
                 AnyOf(HasSubstr("u=3"),

@@ -39,10 +39,10 @@ TEST(CurveEffect, PassesThroughItsPointsAndIsConstantBeyond) {
   EXPECT_NEAR(at(model, 7.0), 0.1, 1e-15);
 }
 
-TEST(CurveEffect, IsTheParabolaThroughEvenPointsBetweenThem) {
-  // central differences are the slopes of a parabola, and the cubic is then the parabola itself
-  const ModelFile model = model_of(plant_text("force_driven_axis") +
-                                   curve_text("sensor", "y_m", "-2, -1, 0, 1, 2", "4, 1, 0, 1, 4"));
+TEST(CurveEffect, IsTheParabolaOnWhichItsPointsLie) {
+  const ModelFile model =
+      model_of(plant_text("force_driven_axis") +
+               curve_text("sensor", "y_m", "-2, -1, 0.2, 1, 3", "4, 1, 0.04, 1, 9"));
   for (double y_m = -1.0; y_m <= 1.0; y_m += 0.05) EXPECT_NEAR(at(model, y_m), y_m * y_m, 1e-14);
 }
 
@@ -81,6 +81,41 @@ TEST(CurveEffect, DoesWhatTheFormulaOfTheSameLineDoes) {
       influence_m = std::max(influence_m, std::abs(formula->position_m() - without->position_m()));
     }
     EXPECT_GT(influence_m, 1e-5) << twin.formula;
+  }
+}
+
+TEST(CurveEffect, IsWhatItsFormulaSays) {
+  const ModelFile model = model_of(
+      plant_text("force_driven_axis") +
+      curve_text("sensor", "y_m", "-1.0, -0.2, 0.0, 0.5, 2.0", "0.3, -0.1, 0.0, -0.2, 0.1"));
+  ModelFile as_formula = model_of(plant_text("force_driven_axis"));
+  formula::FormulaEffect own = model.formula_effects.front();
+  own.curve.reset();
+  as_formula.declare(own, "test");
+  for (const char* name : {"own.f1", "own.f2", "own.f4", "own.f5"})
+    *as_formula.value(name) = *ModelFile(model).value(name);
+  for (double y_m = -1.5; y_m < 2.5; y_m += 0.013)
+    ASSERT_NEAR(at(model, y_m), at(as_formula, y_m), 1e-14) << y_m;
+}
+
+TEST(CurveEffect, EachOfManyLanesIsOnItsOwnPiece) {
+  const ModelFile model =
+      model_of(plant_text("velocity_servo") +
+               curve_text("opening", "u_V", "-2.0, -1.0, -0.5, 0.0, 0.2, 1.0, 3.0",
+                          "-0.03, 0.02, 0.01, 0.0, -0.02, 0.03, -0.01"));
+  auto lanes = make_ensemble(model, model.step_s);
+  lanes->start(0.0);
+  std::vector<std::unique_ptr<Plant>> single;
+  for (std::size_t i = 0; i < Ensemble::Values{}.size(); ++i) single.push_back(make_plant(model));
+  for (int k = 0; k < 50; ++k) {
+    Ensemble::Values u_V;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      u_V[i] = 3.5 * std::sin(0.1 * k + static_cast<double>(i));
+      single[i]->advance(u_V[i], 0.005);
+    }
+    lanes->advance(u_V, 0.005);
+    for (std::size_t i = 0; i < single.size(); ++i)
+      ASSERT_EQ(lanes->reading_m()[i], single[i]->reading_m()) << "lane " << i;
   }
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(Words, WhatTheRecordDoesNotShowIsNoValue) {
   ExampleReport outcome;

@@ -238,11 +238,12 @@ TEST(LongLaws, ALawThatLeavesADisturbanceNeedNotLeaveLessThanWhatIsUnexplained) 
   unexplained.noise_floor_m = context.problem.data.noise_floor_m;
   unexplained.search.final = first;
   unexplained.rms_after_m = 1.0;
+  std::optional<LawSearch> near;
   Diagnosis learned = unexplained;
-  ASSERT_TRUE(learn_laws(context, first, first, learned));
+  ASSERT_TRUE(learn_laws(context, first, first, near, learned));
   ASSERT_TRUE(learned.disturbance);
   unexplained.rms_after_m = 0.99 * learned.rms_after_m;
-  EXPECT_TRUE(learn_laws(context, first, first, unexplained));
+  EXPECT_TRUE(learn_laws(context, first, first, near, unexplained));
   EXPECT_THAT(names_of(unexplained.laws), ElementsAre("cubic_damping"));
 }
 

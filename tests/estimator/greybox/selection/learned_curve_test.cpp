@@ -20,6 +20,8 @@ using diagnose_test::kServoGain;
 using diagnose_test::servo_context;
 using diagnose_test::with_offset;
 using testing::SizeIs;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
 
 /// One per cent of the fastest speed: what a curve of a dozen points leaves.
 constexpr double kClose_mps = 1e-3;
@@ -50,6 +52,23 @@ TEST(LearnedCurve, ALawOfNoFormulaStaysACurve) {
     if (curve.share[i] < 0.005) continue;
     EXPECT_NEAR(x_mps + curve.f[i], kServoGain * waved_V(x_mps / gain), kClose_mps);
   }
+}
+
+TEST(LearnedCurve, WhatIsMissingBesideItIsFoundToo) {
+  const double amplitude_m = 3e-4;
+  const double turns_per_m = 2.0 * M_PI / 0.025;
+  const SearchContext context = servo_context(
+      {.rate_mps = [](double u_V, double, double) { return kServoGain * waved_V(u_V); },
+       .reading_m = [&](double y_m,
+                        double) { return y_m + amplitude_m * std::sin(turns_per_m * y_m); },
+       .samples = 2400});
+  const std::optional<LawSearch> found = search_curve(context, first_stage(context));
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->innovations.final.model.added,
+              UnorderedElementsAre(StartsWith("opening_over_x"), "encoder_eccentricity"));
+  EXPECT_THAT(found->laws, SizeIs(1));
+  const FitSummary& fitted = found->innovations.final.model.fitted;
+  EXPECT_NEAR(fitted.value("encoder_eccentricity.amplitude_m"), amplitude_m, 0.02 * amplitude_m);
 }
 
 TEST(LearnedCurve, NoneIsFollowedWhereAnotherModelExplainsFarMore) {

@@ -1,0 +1,63 @@
+// A drive with a loop of its own ramps the speed that it is asked for.
+//
+//   |w'| <= limit      w follows the commanded speed, ahead of the servo's lag
+//
+// w  speed that the loop is given, m/s    limit  m/s^2
+// Each step takes the mean of w over it. Source: ramp generator of a speed-controlled drive,
+// Leonhard, Control of Electrical Drives, chapter 7.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "plant_sim/effects/site.h"
+#include "plant_sim/parameter.h"
+#include "plant_sim/scalar.h"
+
+namespace plant_sim::effects {
+
+template <class S>
+struct AccelerationLimit {
+  static constexpr const char* kName = "acceleration_limit";
+  static constexpr const char* kEquation = "|w'| <= limit, w follows the commanded speed";
+  static constexpr std::array kSites = {Site::set_speed};
+  static constexpr bool kDissipative = false;
+
+  struct Parameters {
+    S limit_mps2 = std::numeric_limits<double>::infinity();
+
+    template <class V>
+    void visit(V&& v) {
+      v(ParameterInfo{"limit_mps2", "steepest ramp of the commanded speed; inf is none", 1e-6,
+                      std::numeric_limits<double>::infinity(), 0.5,
+                      std::numeric_limits<double>::infinity()},
+        limit_mps2);
+    }
+  };
+  struct Memory {
+    S held_mps = 0.0;
+    double step_s = 1.0;
+    bool begun = false;
+
+    void prepare(double of_s) { step_s = of_s; }
+    void reset() { begun = false; }
+  };
+
+  static S set_mps(const Parameters& p, Memory& memory, const S& asked_mps) {
+    if (!memory.begun) memory.held_mps = asked_mps;
+    memory.begun = true;
+    const S before_mps = memory.held_mps;
+    const S most_mps = p.limit_mps2 * S(memory.step_s);
+    const S gap_mps = asked_mps - before_mps;
+    // the mean over the step of a ramp that ends where the commanded speed is reached
+    const S way_mps = clamp(gap_mps, -most_mps, most_mps);
+    memory.held_mps = before_mps + way_mps;
+    const S share = abs(way_mps) / max(most_mps, S(kLeast));  // of the step in which it ramps
+    return memory.held_mps - S(0.5) * share * way_mps;
+  }
+
+ private:
+  static constexpr double kLeast = 1e-300;
+};
+
+}  // namespace plant_sim::effects

@@ -1,0 +1,91 @@
+// What a bought drive adds to a servo: ramps, gains that saturate, loops that a load makes yield.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/learned_laws.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using diagnose_test::kServoGain;
+using diagnose_test::servo_context;
+using testing::ElementsAre;
+
+Diagnosis diagnosed(const diagnose_test::ServoRun& run) {
+  const SearchContext context = servo_context(run);
+  return diagnose(context.problem, {});
+}
+
+double value(const Diagnosis& d, const std::string& name) { return d.final.value(name); }
+
+TEST(ServoLaws, ARampOfTheSpeedIsNamedWithItsLimit) {
+  constexpr double kLimit_mps2 = 0.35;
+  double speed_mps = 0.0;
+  const Diagnosis d = diagnosed({.rate_mps =
+                                     [&](double u_V, double, double) {
+                                       const double most_mps = kLimit_mps2 * 1e-4;
+                                       const double gap_mps = kServoGain * u_V - speed_mps;
+                                       speed_mps += std::clamp(gap_mps, -most_mps, most_mps);
+                                       return speed_mps;
+                                     },
+                                 .samples = 2400});
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("acceleration_limit"));
+  EXPECT_NEAR(value(d, "acceleration_limit.limit_mps2"), kLimit_mps2, 0.01 * kLimit_mps2);
+}
+
+TEST(ServoLaws, AGainThatSaturatesIsAFormula) {
+  constexpr double kFull_V = 1.2;
+  const Diagnosis d =
+      diagnosed({.rate_mps = [](double u_V, double,
+                                double) { return kServoGain * kFull_V * std::tanh(u_V / kFull_V); },
+                 .samples = 2400});
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  EXPECT_THAT(d.missing, ElementsAre("tanh_saturation"));
+  EXPECT_NEAR(value(d, "gain_mps_per_V"), kServoGain, 1e-3 * kServoGain);
+}
+
+TEST(ServoLaws, ALawThatComesNearIsInTheBetterModelAndNoVerdict) {
+  // a weight on an arm, which the integrator of a speed loop takes back in time
+  constexpr double kYields_mps = 0.02;
+  constexpr double kTakesBack_s = 8.0;
+  double taken_mps = 0.0;
+  const SearchContext context =
+      servo_context({.rate_mps =
+                         [&](double u_V, double y_m, double) {
+                           const double yields_mps = kYields_mps * std::sin((y_m - 0.3) / 0.04);
+                           taken_mps += 1e-4 / kTakesBack_s * (yields_mps - taken_mps);
+                           return kServoGain * u_V + yields_mps - taken_mps;
+                         },
+                     .samples = 2400});
+  const ModelStage first = first_stage(context);
+  const std::optional<LawSearch> found =
+      search_laws(context, first, "", {}, LawChoice::unexplained, kMostInnovationEffects);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->explains_record());
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  d.noise_floor_m = context.problem.data.noise_floor_m;
+  d.search.final = first;
+  d.rms_after_m = first.fitted.validation_rms_m;
+  approximate_by_laws(context, first, *found, d);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  ASSERT_FALSE(d.laws.empty()) << found->laws.front().effect.name << " leaves " << simulated(found->context, found->innovations.final.model.fitted).validation_rms_m << " of " << d.rms_after_m;
+  EXPECT_LT(d.rms_after_m, 0.5 * first.fitted.validation_rms_m);
+  weigh_doubts(d);
+  for (const Law& law : d.laws) {
+    EXPECT_NE(d.better.value(law.effect.name + "." + law.effect.parameters.front().name), nullptr);
+    EXPECT_THAT(d.possible,
+                testing::Contains(testing::Field(&PossibleEffect::effect, law.effect.name)));
+  }
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
