@@ -309,12 +309,14 @@ bool is_spool(const ReadColumn& column) {
 bool is_drive_set_point(const ReadColumn& column) {
   const std::string& si = column.text.unit.si;
   const bool electric = si == "V" || si == "A" || si == "pct";
-  const bool commanded = is_reference(column) || has_word(column.words, kCommandWords);
-  const bool speed = electric && commanded && has_word(column.words, kSpeedWords);
+  std::vector<std::string> words = column.words;
+  std::erase_if(words,
+                [&](const std::string& word) { return electric && has_word({word}, kSpeedWords); });
+  const bool speed = words.size() < column.words.size();
+  const bool asked = is_reference(column) || (speed && has_word(words, {"command*", "cmd"}));
   const bool drives = electric || si == "N" || si == "Nm";
-  const bool other = has_word(column.words, kOtherWords);
-  return (speed || (is_reference(column) && drives && !other)) && may_drive(column) &&
-         !has_word(column.words, kPositionWords);
+  return asked && drives && may_drive(column) && !is_measured(column) &&
+         !has_word(words, kOtherWords) && !has_word(words, kPositionWords);
 }
 
 bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }

@@ -35,7 +35,8 @@ struct LawCurve {
 
 /// Covariance of some fitted parameters, in their units: `errors` (NaN at a bound: taken as
 /// exact there) with the correlations of the fit. Where it left no Jacobian they are unknown, and
-/// each pair counts as correlated as is worst: empty. Parameters that are not among them have none.
+/// each pair counts as correlated as is worst: empty. Names that were not fitted have rows of
+/// zeros.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const FitDataset& data, const FitSummary& fitted,
                                             const std::vector<std::string>& names,
                                             const Eigen::VectorXd& errors);

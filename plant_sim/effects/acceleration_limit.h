@@ -3,8 +3,8 @@
 //   |w'| <= limit      w follows the commanded speed, ahead of the servo's lag
 //
 // w  speed that the loop is given, m/s    limit  m/s^2
-// Each step takes the mean of w over it. Source: ramp generator of a speed-controlled drive,
-// Leonhard, Control of Electrical Drives, chapter 7.
+// The first speed that is asked for is taken as it is; a step has the mean of w over it. Source:
+// ramp generator of a speed-controlled drive, Leonhard, Control of Electrical Drives, chapter 7.
 #pragma once
 
 #include <array>
@@ -48,16 +48,11 @@ struct AccelerationLimit {
     memory.begun = true;
     const S before_mps = memory.held_mps;
     const S most_mps = p.limit_mps2 * S(memory.step_s);
-    const S gap_mps = asked_mps - before_mps;
-    // the mean over the step of a ramp that ends where the commanded speed is reached
-    const S way_mps = clamp(gap_mps, -most_mps, most_mps);
-    memory.held_mps = before_mps + way_mps;
-    const S share = abs(way_mps) / max(most_mps, S(kLeast));  // of the step in which it ramps
-    return memory.held_mps - S(0.5) * share * way_mps;
+    memory.held_mps = clamp(asked_mps, before_mps - most_mps, before_mps + most_mps);
+    const S way_mps = memory.held_mps - before_mps;
+    const S ramp_share = abs(way_mps) / most_mps;  // share of the step in which the speed changes
+    return memory.held_mps - S(0.5) * ramp_share * way_mps;
   }
-
- private:
-  static constexpr double kLeast = 1e-300;
 };
 
 }  // namespace plant_sim::effects

@@ -100,7 +100,7 @@ constexpr std::array kAxisDrift{
     Word{"measurement", "look for a loose mount or a sensor that warms up"},
 };
 
-// A servo is known by its speed alone: what moves it is not said.
+// A servo is known by its speed alone, and moved by a motor or by oil.
 constexpr std::array kServoRecord{
     Word{"flow",
          "record the speed that the drive itself measures, with the motor's current or the chamber "
@@ -111,7 +111,7 @@ constexpr std::array kServoRecord{
     Word{"lag", "record the drive's own speed, which shows a lag ahead of it"},
 };
 
-/// What the plant is driven by: its valve, a motor or, of a servo, either.
+/// Words for a plant by its drive: a valve, a motor or, of a servo, either.
 struct Drive {
   const std::array<Word, 4>& enters;
   const std::array<Word, 4>& drift;
@@ -234,7 +234,10 @@ std::string words_for_motion(const std::vector<std::string>& names, const std::s
 std::string words_for_sensor(const plant_sim::ModelFile& model,
                              const std::vector<std::string>& names) {
   std::string sensor = "the chamber pressures would";
-  if (!has_site(model.plant, "opening")) {
+  if (has_site(model.plant, "set_speed")) {
+    sensor = any_at(model, names, "sensor") ? "a second position sensor would"
+                                            : "the speed that the drive itself measures would";
+  } else if (!has_site(model.plant, "opening")) {
     sensor = any_at(model, names, "sensor") ? "a second position sensor would"
              : any_at(model, names, "force") || any_at(model, names, "dry_friction")
                  ? "a load cell, or the motor's current, would"

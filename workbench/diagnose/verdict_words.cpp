@@ -63,7 +63,13 @@ std::string undetermined_words(const selection::Diagnosis& d) {
   if (d.ambiguous.empty() && d.established().empty())
     return "Undetermined: perhaps missing: " + effects_words(d, d.missing) + ".";
   if (d.ambiguous.empty()) {
-    return missing_words(d) + " Perhaps missing too: " + effects_words(d, possible_names(d)) + ".";
+    const std::vector<std::string> doubted = possible_names(d);
+    std::vector<std::string> sure = d.missing;
+    std::erase_if(sure, [&](const std::string& name) {
+      return std::find(doubted.begin(), doubted.end(), name) != doubted.end();
+    });
+    return "Undetermined: missing: " + effects_words(d, sure) +
+           "; perhaps missing too: " + effects_words(d, doubted) + ".";
   }
   const std::vector<std::string> sure = undisputed(d);
   return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
@@ -82,7 +88,7 @@ std::string law_words(const selection::Law& law) {
 std::string approximation_words(const selection::Diagnosis& d) {
   return d.laws.empty()
              ? ""
-             : " Closest to it: " + config::schema::joined_by(d.laws, law_words, "; and ") + ".";
+             : " The nearest law: " + config::schema::joined_by(d.laws, law_words, "; and ") + ".";
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {

@@ -1,4 +1,4 @@
-// What is missing beside a learned curve: effects of the library and laws of the dictionary. A
+// Effects of the library and laws of the dictionary that are missing beside a learned curve. A
 // curve is sought where no effect explains the record alone; one that acts elsewhere is seen only
 // beside it, and without it biases the values.
 #pragma once

@@ -296,21 +296,13 @@ const char* to_string(Doubt doubt) {
   return "stand_in";
 }
 
-namespace {
-
-bool is_law(const Diagnosis& diagnosis, const std::string& effect) {
-  return std::any_of(diagnosis.laws.begin(), diagnosis.laws.end(),
-                     [&](const Law& law) { return law.effect.name == effect; });
-}
-
-}  // namespace
-
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   const bool error_remains = diagnosis.verdict == Verdict::unexplained;
   std::vector<std::optional<Doubt>> doubts;
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
-    if (!doubt && error_remains && is_law(diagnosis, effect)) doubt = Doubt::stand_in;
+    // beside a law that only comes near, an effect may make up for what it lacks
+    if (!doubt && error_remains && !diagnosis.laws.empty()) doubt = Doubt::stand_in;
     if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
     if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);

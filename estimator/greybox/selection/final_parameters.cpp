@@ -57,13 +57,12 @@ FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& sta
 }
 
 /// True where a free run has followed a drift by bending the motion: it gives up an effect of the
-/// search, or leaves much more under the observer than this, or more than the file does.
+/// search, or leaves much more under the observer than the search did, or more than the file does.
 bool bends_motion(const SearchContext& context, const StructureSearch& search,
                   const FitSummary& run) {
   const FitSummary& searched = search.final.fitted;
-  for (std::size_t i = 0; i < run.parameters.size(); ++i) {
-    const bool of_effect = run.parameters[i].name.find('.') != std::string::npos;
-    if (of_effect && run.at_bound[i] != 0 && searched.at_bound[i] == 0) return true;
+  for (const std::string& effect : search.final.added) {
+    if (is_idle(run, effect) && !is_idle(searched, effect)) return true;
   }
   return simulated(context, run).validation_rms_m >
          std::min(kBends * searched.validation_rms_m, search.nominal_rms_m);

@@ -200,10 +200,11 @@ class Dictionary {
       add(name, what, site, fmt::format(fmt::runtime(formula), own, full),
           {size("bend_ratio", 5.0 * kTypicalRatio, Sign::positive, 20.0)}, {"u"});
     };
-    add_soft("root_saturation", "gain that falls as the root of a square",
+    add_soft("root_saturation", "gain that saturates as x / sqrt(1 + x^2)",
              "{0} / sqrt(1 + (bend_ratio * {0} / {1})^2)");
-    add_soft("tanh_saturation", "gain that saturates as a hyperbolic tangent",
-             "if(bend_ratio > 0, {1} * tanh(bend_ratio * {0} / {1}) / max(bend_ratio, 1e-9), {0})");
+    add_soft(
+        "tanh_saturation", "gain that saturates as a hyperbolic tangent",
+        "if(bend_ratio > 1e-9, {1} * tanh(bend_ratio * {0} / {1}) / max(bend_ratio, 1e-9), {0})");
     if (!opens) return;
     const auto add_one = [&](const char* name, const char* what, const std::string& side) {
       add(name, what, "opening",
@@ -291,7 +292,7 @@ class Dictionary {
   }
 
   void add_commands() {
-    if (!laws_.empty() && laws_.back().effect.site == "opening") return;
+    if (opening_per_V() > 0.0) return;
     const double full_V = rounded(rig_.most_command_V);
     add("gain_curvature", "gain that changes with the square of the command", "command",
         fmt::format("u_V * (1 + curvature_ratio * (u_V / {})^2)", full_V),

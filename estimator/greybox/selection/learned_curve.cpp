@@ -5,15 +5,13 @@
 #include <initializer_list>
 #include <utility>
 
-#include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/selection/beside_curve.h"
-#include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/curve_place.h"
 #include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/greybox/selection/settled_memo.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
 #include "plant_sim/formula/curve_effect.h"
-#include "plant_sim/hydraulics.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -29,13 +27,6 @@ constexpr std::size_t kMostPoints = 28;
 /// Share of what the first curve leaves that one through more points has to undercut, where it
 /// leaves much: otherwise something else is missing too.
 constexpr double kHardlyLess = 0.75;
-/// Share of the samples beyond either end of a curve.
-constexpr double kSparse = 0.002;
-/// A force of typical size as a share of the rig's greatest; a gain's share.
-constexpr double kCurveForce = 0.03;
-constexpr double kCurveRatio = 0.1;
-/// Share by which the level of a friction changes.
-constexpr double kCurveOfFriction = 0.3;
 /// Share of what a curve has explained that others may gain beside it: between a few points it is a
 /// cubic, whatever the law.
 constexpr double kInexactCurves = 0.02;
@@ -47,116 +38,10 @@ constexpr double kMostOfRest = 0.5;
 /// convergence do not make up for.
 constexpr double kFarBehind_nats = 200.0;
 constexpr double kShareOfBest = 0.5;
-constexpr const char* kFrictionLevel = "dry_friction";
 /// Largest value of a curve over its typical one.
 constexpr double kMostOfCurve = 100.0;
 
-/// A curve's place: its site, the signal it goes over and the one that it is multiplied by.
-struct Place {
-  std::string site;
-  std::string over;
-  std::string times;
-  std::string variable;  ///< name in the score test
-  double typical = 0.0;
-  bool dissipates = false;
-};
-
-std::string signal_of(const std::string& variable) {
-  if (variable == "y") return "y_m";
-  if (variable == "v" || variable == "speed" || variable == "direction") return "v_mps";
-  if (variable == "u") return "u_V";
-  return variable == "acceleration" ? "a_mps2" : "";
-}
-
-/// Opening per command of plants that have an opening; 0 for others.
-double opening_per_V(const plant_sim::ModelFile& given) {
-  plant_sim::ModelFile model = given;
-  if (const auto oil = plant_sim::hydraulics_of(model)) return oil->valve_gain_m_per_V;
-  const double* const servo = model.value("gain_mps_per_V");
-  return servo == nullptr ? 0.0 : *servo;
-}
-
-std::optional<Place> place_of(const SearchContext& context, const RigScale& rig,
-                              const CurveGain& curve) {
-  Place place{"force", signal_of(curve.variable), "", curve.variable, kCurveForce * rig.force_N};
-  if (place.over.empty()) return {};
-  if (curve.input == ResidualInput::force) {
-    place.dissipates = place.over == "v_mps";
-    return place;
-  }
-  if (curve.input == ResidualInput::drag) {
-    place.times = "v_mps";
-    place.typical /= rig.speed_mps;
-    return place;
-  }
-  const double opening = opening_per_V(context.problem.model);
-  const bool adds = curve.input != ResidualInput::gain;
-  // what is added to an axis' command over its motion is a force
-  if (!(opening > 0.0) && adds && place.over != "u_V") return place;
-  place.site = opening > 0.0 ? "opening" : "command";
-  const std::string own = opening > 0.0 ? "x_m" : "u_V";
-  if (place.over == "u_V") place.over = own;
-  if (curve.input == ResidualInput::gain) place.times = own;
-  const double full = (opening > 0.0 ? opening : 1.0) * rig.most_command_V;
-  place.typical = curve.input == ResidualInput::gain ? kCurveRatio : kCurveRatio * full;
-  return place;
-}
-
-/// All counted samples of a signal, ascending.
-std::vector<double> samples_of(const SearchContext& context, const std::string& signal) {
-  const FitDataset& data = context.problem.data;
-  const double per_V = opening_per_V(context.problem.model);
-  std::vector<double> all;
-  for (const Dataset& record : data.records) {
-    const Kinematics motion = kinematics(record, data.noise_floor_m);
-    for (std::size_t k = 0; k < record.size(); ++k) {
-      if (record.valid[k] == 0) continue;
-      const double value = signal == "y_m"     ? record.y_m[k]
-                           : signal == "v_mps" ? motion.speed_mps[k]
-                           : signal == "u_V"   ? record.u_V[k]
-                           : signal == "x_m"   ? per_V * record.u_V[k]
-                                               : motion.acceleration_mps2[k];
-      if (std::isfinite(value)) all.push_back(value);
-    }
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-/// Points half way between equal steps and equal shares of the samples; one at zero where the
-/// signal has both signs, since a law over it often bends there.
-std::vector<double> points_of(const std::vector<double>& sorted, std::size_t count) {
-  const auto quantile = [&](double share) {
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-  };
-  const double low = quantile(kSparse);
-  const double high = quantile(1.0 - kSparse);
-  if (!(high > low)) return {};
-  std::vector<double> points;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    points.push_back(
-        0.5 * (low + (high - low) * share + quantile(kSparse + (1.0 - 2.0 * kSparse) * share)));
-  }
-  if (low < 0.0 && high > 0.0) {
-    const auto nearest =
-        std::min_element(points.begin() + 1, points.end() - 1,
-                         [](double a, double b) { return std::abs(a) < std::abs(b); });
-    *nearest = 0.0;
-  }
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    if (!(points[i + 1] - points[i] > 1e-3 * (high - low))) return {};
-  }
-  return points;
-}
-
-std::string name_of(const Place& place) {
-  std::string name = place.site + "_over_" + place.over.substr(0, place.over.find('_'));
-  if (!place.times.empty()) name += "_times_" + place.times.substr(0, place.times.find('_'));
-  return name;
-}
-
-FormulaEffect effect_of(const Place& place, std::vector<double> points) {
+FormulaEffect effect_of(const CurvePlace& place, std::vector<double> points) {
   FormulaEffect effect;
   effect.name = name_of(place);
   effect.site = place.site;
@@ -172,7 +57,7 @@ FormulaEffect effect_of(const Place& place, std::vector<double> points) {
 }
 
 struct Attempt {
-  Place place;
+  CurvePlace place;
   FormulaEffect effect;
   SearchContext context;
   InnovationStage stage;
@@ -186,7 +71,7 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
   const std::vector<plant_sim::EffectInfo> effects =
       plant_sim::effects_of(attempt.context.problem.model);
   std::vector<FreeParameter> own = effect_parameters(effects.back(), kEveryRefinement);
-  const Place& place = attempt.place;
+  const CurvePlace& place = attempt.place;
   for (std::size_t i = 0; i < own.size() && place.dissipates; ++i) {
     const double speed_mps = attempt.effect.curve->x[i];
     if (speed_mps > 0.0) own[i].lower = 0.0;
@@ -206,10 +91,9 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
 }
 
 /// The curve at a place through so many points; none where the signal hardly varies.
-std::optional<Attempt> attempt_at(const SearchContext& context, const Place& place,
+std::optional<Attempt> attempt_at(const SearchContext& context, const CurvePlace& place,
                                   std::size_t count) {
-  const std::vector<double> samples = samples_of(context, place.over);
-  std::vector<double> points = samples.empty() ? samples : points_of(samples, count);
+  std::vector<double> points = curve_points(context, place, count);
   if (points.empty()) return {};
   Attempt attempt{place, effect_of(place, std::move(points)), context, {}};
   attempt.context.problem.model.declare(attempt.effect, "learned curve");
@@ -222,7 +106,7 @@ std::vector<Attempt> first_attempts(const SearchContext& context, const Innovati
   std::vector<std::string> names;
   for (const CurveGain& curve : curve_gains(stage)) {
     if (names.size() == kTried || !(curve.gain_nats > kCurve_nats)) break;
-    const std::optional<Place> place = place_of(context, rig, curve);
+    const std::optional<CurvePlace> place = curve_place(context, rig, curve);
     if (!place || std::find(names.begin(), names.end(), name_of(*place)) != names.end()) continue;
     names.push_back(name_of(*place));
     if (std::optional<Attempt> attempt = attempt_at(context, *place, kFirstPoints))
@@ -230,7 +114,7 @@ std::vector<Attempt> first_attempts(const SearchContext& context, const Innovati
   }
   // the score test knows no friction whose level changes: gains and drags stand in for it
   if (rubs(context, stage.model.added)) {
-    const Place place{kFrictionLevel, "y_m", "", "y", kCurveOfFriction};
+    const CurvePlace place = friction_level();
     if (std::optional<Attempt> attempt = attempt_at(context, place, kFirstPoints))
       attempts.push_back(std::move(*attempt));
   }
@@ -270,7 +154,7 @@ std::optional<Attempt> likeliest(const SearchContext& context, const InnovationS
   if (is_far_behind(context, first, stage)) return {};
   const double first_left_nats = largest_curve_nats(first);
   if (first_left_nats > 0.5 * (penalised(stage) - penalised(first))) return {};
-  const Place place = attempts.front().place;
+  const CurvePlace place = attempts.front().place;
   const auto try_counts = [&](std::initializer_list<std::size_t> counts) {
     const std::size_t tried = attempts.size();
     for (const std::size_t count : counts) {
@@ -362,8 +246,8 @@ std::optional<LawSearch> with_lines(Learned learned) {
   return std::move(result);
 }
 
-/// What was found beside the curve, and the curve anew beside that: through as many points as it
-/// needs there.
+/// The effects and laws found beside a curve, and the curve fitted anew beside them through as many
+/// points as it needs there; none where one of them is no longer needed, or this is no likelier.
 std::optional<LawSearch> with_beside(const LawSearch& learned, const BesideCurve& beside) {
   std::optional<Learned> again = curve_beside(beside.context, beside.without_curve.model);
   if (!again) return {};
@@ -374,8 +258,16 @@ std::optional<LawSearch> with_beside(const LawSearch& learned, const BesideCurve
   };
   put_before(beside.innovations.rounds);
   put_before(learned.innovations.rounds);
-  search.gains_nats.insert(beside.innovations.gains_nats.begin(),
-                           beside.innovations.gains_nats.end());
+  // a finer curve may do without an effect that mended a coarse one
+  const SearchContext context = without_holdouts(again->search.context);
+  for (const std::string& effect : search.final.model.added) {
+    search.without.push_back(without(context, search.final, effect));
+    const double gain_nats = 0.5 * (penalised(search.without.back()) - penalised(search.final));
+    if (context.cancelled() || !(gain_nats > kEvidence_nats)) return {};
+    search.gains_nats[effect] = gain_nats;
+  }
+  if (!(penalised(search.final) < penalised(learned.innovations.final) - 2.0 * kRivals_nats))
+    return {};
   again->search.context.problem.candidate_effects = beside.context.problem.candidate_effects;
   again->search.laws.insert(again->search.laws.end(), beside.laws.begin(), beside.laws.end());
   return with_lines(std::move(*again));

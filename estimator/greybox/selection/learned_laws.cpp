@@ -35,10 +35,17 @@ std::string class_of(const Law& law) {
   return law.effect.site == "leakage" || law.effect.site == "flow" ? "flow" : "gain";
 }
 
-/// Sets what a diagnosis that ends at laws says of them.
-void state_laws(const SearchContext& context, const LawSearch& found, const Diagnosis& before,
-                Diagnosis& learned) {
-  learned.laws = found.laws;
+/// Gives a diagnosis that ends at laws these, and a better model with them.
+void take_as_they_are(const SearchContext& context, const std::vector<Law>& laws,
+                      Diagnosis& learned) {
+  learned.laws = laws;
+  plant_sim::ModelFile model = context.problem.model;
+  for (const Law& law : laws) model.declare(law.effect, "dictionary of laws");
+  learned.better = with_values(model, learned.final);
+}
+
+/// Names the places of laws that explain a record.
+void locate_laws(const LawSearch& found, const Diagnosis& before, Diagnosis& learned) {
   std::vector<Localisation> where;
   const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
   for (const Law& law : found.laws)
@@ -51,9 +58,6 @@ void state_laws(const SearchContext& context, const LawSearch& found, const Diag
   }
   learned.where = std::move(where);
   learned.where_is_whole = true;
-  plant_sim::ModelFile model = context.problem.model;
-  for (const Law& law : found.laws) model.declare(law.effect, "dictionary of laws");
-  learned.better = with_values(model, learned.final);
 }
 
 /// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
@@ -73,7 +77,8 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   }
   if (learned.verdict == Verdict::unexplained) return false;
   learned.verdict = Verdict::learned;
-  state_laws(context, found, before, learned);
+  take_as_they_are(context, found.laws, learned);
+  locate_laws(found, before, learned);
   result = std::move(learned);
   return true;
 }
@@ -119,10 +124,11 @@ bool seek_laws(const SearchContext& context, const ModelStage& first,
     const std::optional<LawSearch> found =
         search_laws(context, first, "", effects, choice, most_effects);
     if (!found) return false;
-    if (!found->explains_record() || !accepts(found->innovations.final)) {
+    if (!found->explains_record()) {
       approximate = found;
       return false;
     }
+    if (!accepts(found->innovations.final)) return false;
     if (take_better(context, first, found, result)) return true;
     if (found->laws.size() < 2) return false;
     most_effects = found->innovations.final.model.added.size() - 1;
@@ -178,8 +184,10 @@ void approximate_by_laws(const SearchContext& context, const ModelStage& first,
   Diagnosis approximated = begun(result);
   conclude(found.context, found.context, first, found.innovations, approximated);
   if (!(approximated.rms_after_m < enough_m)) return;
+  const std::vector<Law> laws = laws_among(found.laws, approximated.missing);
+  if (laws.empty()) return;
   approximated.verdict = Verdict::unexplained;
-  state_laws(context, found, result, approximated);
+  take_as_they_are(context, laws, approximated);
   result = std::move(approximated);
 }
 

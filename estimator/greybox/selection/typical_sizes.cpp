@@ -32,8 +32,7 @@ constexpr std::array kUnits = {
     UnitScale{"_Pa_per_m3ps",
               [](const RigScale& s) { return s.pressure_Pa / (s.area_m2 * s.speed_mps); }},
     UnitScale{"_m3ps", [](const RigScale& s) { return s.area_m2 * s.speed_mps; }},
-    UnitScale{"_mps2",
-              [](const RigScale& s) { return s.speed_mps * s.speed_mps / s.length_m; }},
+    UnitScale{"_mps2", [](const RigScale& s) { return s.speed_mps * s.speed_mps / s.length_m; }},
     UnitScale{"_mps", [](const RigScale& s) { return s.speed_mps; }},
     UnitScale{
         "_kg",

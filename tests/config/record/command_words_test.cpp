@@ -90,5 +90,15 @@ TEST(Proposals, PreferASetPointWithADrivesUnitToNone) {
   }
 }
 
+TEST(Proposals, TakeNoOtherSpeedForACommand) {
+  for (const char* other : {"Pump speed setpoint [%]", "Velocity command error [V]",
+                            "Max speed setpoint [%]", "Drive speed actual [%]"}) {
+    EXPECT_THAT(
+        error_of(std::string("Time [s],") + other + ",Position [mm]\n0,1,2\n1,2,3\n2,1,2\n"),
+        HasSubstr("u=COLUMN[UNIT]"))
+        << other;
+  }
+}
+
 }  // namespace
 }  // namespace config::record

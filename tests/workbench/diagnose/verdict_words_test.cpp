@@ -21,8 +21,8 @@ TEST(VerdictWords, WhatIsSureIsSaidApartFromWhatMayBe) {
   d.missing = {"friction", "null_bias"};
   d.possible = {{"null_bias", selection::Doubt::within_error}};
   const std::string words = verdict_words(d);
-  EXPECT_THAT(words, HasSubstr("Missing: friction: Coulomb"));
-  EXPECT_THAT(words, HasSubstr("Perhaps missing too: null_bias"));
+  EXPECT_THAT(words, HasSubstr("Undetermined: missing: friction: Coulomb"));
+  EXPECT_THAT(words, HasSubstr("perhaps missing too: null_bias"));
 }
 
 TEST(VerdictWords, LawsThatComeNearAreNoAnswer) {
@@ -36,9 +36,10 @@ TEST(VerdictWords, LawsThatComeNearAreNoAnswer) {
   pendulum.what = "weight on an arm";
   pendulum.formula = "force_N * sin(y_m / arm_m)";
   d.laws = {{pendulum, {"y"}}};
-  EXPECT_THAT(verdict_words(d),
-              AllOf(HasSubstr("Unexplained: "), HasSubstr("no effect of the library explains it"),
-                    HasSubstr("Closest to it: weight on an arm: F = force_N * sin(y_m / arm_m).")));
+  EXPECT_THAT(
+      verdict_words(d),
+      AllOf(HasSubstr("Unexplained: "), HasSubstr("no effect of the library explains it"),
+            HasSubstr("The nearest law: weight on an arm: F = force_N * sin(y_m / arm_m).")));
 }
 
 TEST(AdviceWords, AServoIsAskedForItsSpeedAndNotForASpool) {
