@@ -11,6 +11,7 @@
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
+#include "estimator/greybox/selection/rig_scale.h"
 #include "estimator/greybox/selection/settled_trials.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
@@ -29,6 +30,10 @@ constexpr double kContends_nats = 30.0;
 /// The same for an effect behind a spectral line, as a share of the line's gain: a line is exact at
 /// once, and stands for a resonance whose parameters and noise model have yet to find each other.
 constexpr double kContendsWithLine = 0.7;
+/// Distance of a spring's rest from the motion, in RMS of that, from which on it is hardly more
+/// than a constant force; and share of its gain that this then has.
+constexpr double kFarRest = 4.0;
+constexpr double kMostOfSpring = 0.8;
 
 /// Drops effects that have left their range since others came in: these, or a law that the library
 /// does not have, are what they stood for.
@@ -94,7 +99,7 @@ class RoundTrials {
       polish_contenders(chosen);
       chosen = likeliest(evidence_nats);
     }
-    return chosen;
+    return chosen == none() ? chosen : constant_force_instead(chosen, evidence_nats);
   }
 
   [[nodiscard]] std::size_t none() const { return trials_.size(); }
@@ -173,6 +178,24 @@ class RoundTrials {
       if (best == none() || candidate.gain_nats > trials_[best].candidate.gain_nats) best = i;
     }
     return best;
+  }
+
+  /// The constant force in place of a spring that is hardly more: its slope may stand for what is
+  /// not found yet, and gains in the next round where it is real.
+  std::size_t constant_force_instead(std::size_t chosen, double evidence_nats) {
+    if (trials_[chosen].candidate.effect != "load_spring") return chosen;
+    const RigScale rig = rig_scale(plain_.problem.model, plain_.problem.data);
+    const double rest_m = stages_[chosen].model.fitted.value("load_spring.rest_m");
+    if (!(std::abs(rest_m - rig.centre_m) > kFarRest * rig.length_m)) return chosen;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (trials_[i].candidate.effect != "load_force") continue;
+      if (!trials_[i].candidate.settled) settle({i});
+      if (polished_[i] == 0) polish_contenders(i);
+      const double spring_nats = trials_[chosen].candidate.gain_nats;
+      const double enough_nats = std::max(evidence_nats, kMostOfSpring * spring_nats);
+      if (trials_[i].candidate.settled && trials_[i].candidate.gain_nats >= enough_nats) return i;
+    }
+    return chosen;
   }
 
   /// True for lines that the record tells apart by their frequency.

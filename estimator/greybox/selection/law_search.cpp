@@ -46,8 +46,13 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
   problem.trial_sizes = kLawSizes;
   for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
   // the library's effects with the sizes that are typical of this rig
+  const auto competes = [&](const std::string& name) {
+    return std::find(effects.begin(), effects.end(), name) != effects.end();
+  };
   std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
-    return std::find(effects.begin(), effects.end(), effect.name) == effects.end();
+    // a spring with its rest far away may be a constant force
+    const bool constant = effect.name == "load_force" && competes("load_spring");
+    return !constant && !competes(effect.name);
   });
   for (const plant_sim::EffectInfo& effect : absent_effects(problem.model)) {
     const bool law = std::any_of(laws.begin(), laws.end(),

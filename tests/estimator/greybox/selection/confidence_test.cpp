@@ -146,6 +146,29 @@ TEST(Confidence, NothingIsLearnedWhereALawIsNotEstablished) {
   }
 }
 
+TEST(Confidence, ALawThatIsNotEstablishedAtTheFloorIsUndetermined) {
+  for (const double times : {1.0, 3.0}) {
+    Diagnosis d = unexplained();
+    d.verdict = Verdict::learned;
+    d.laws.emplace_back();
+    d.laws.front().effect.name = "backlash";
+    d.noise_floor_m = 2e-6;
+    d.rms_after_m = times * d.floor_m();
+    weigh_doubts(d);
+    EXPECT_EQ(d.verdict, times > 2.0 ? Verdict::unexplained : Verdict::undetermined) << times;
+  }
+}
+
+TEST(Confidence, NothingIsEstablishedBesideALawThatOnlyComesNear) {
+  Diagnosis d = unexplained();
+  weigh_doubts(d);
+  ASSERT_FALSE(d.established().empty());
+  d.laws.emplace_back();
+  d.laws.front().effect.name = "pendulum";
+  weigh_doubts(d);
+  EXPECT_THAT(d.established(), IsEmpty());
+}
+
 TEST(Confidence, WhereAnErrorRemainsASizeIsClearAtThreeStandardErrors) {
   Diagnosis d = unexplained();
   d.parameters[3].value = 2.5 * d.parameters[3].std_error;
