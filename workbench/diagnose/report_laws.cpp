@@ -68,7 +68,9 @@ Plot law_plot(const DiagnosisReport& outcome, const LearnedLaw& learned) {
 }  // namespace
 
 present::Section laws_section(const DiagnosisReport& outcome) {
-  present::Section section{.heading = "The learned law"};
+  const bool learned_whole = outcome.diagnosis.verdict == selection::Verdict::learned;
+  present::Section section{.heading = learned_whole ? "The learned law"
+                                                    : "The nearest law, which is not established"};
   section.paragraphs = {
       "What the law adds at its site, over one variable, and its standard error. Points: what is "
       "left of the measured motion without it, where that can be told."};
