@@ -8,8 +8,8 @@
 // zeta  damping ratio of a lag of second order with the natural frequency 1 / tau
 // The quasi-static limit of the hydraulic actuator: pressures and mass follow at once. Effects act
 // on the command, on gain u (acceleration_limit), on x (deadband, flow_asymmetry, underlap: x
-// stands for the spool position, gain for its travel per volt), and on the reading. There is no end
-// of the stroke: position is relative. Each step with the command held is solved exactly in x; what
+// stands for the spool position, gain for its travel per volt), and on the reading. Position is
+// relative, and the stroke has no end. Each step with the command held is solved exactly in x; what
 // opening() makes of it is integrated by Gauss's rule of two points.
 #pragma once
 

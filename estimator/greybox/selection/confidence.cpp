@@ -234,16 +234,20 @@ bool is_outdone(const Diagnosis& diagnosis, const std::string& effect) {
   });
 }
 
-/// True where two or more parameters of the plant are fitted and all of them are at their bounds:
-/// the plant is another.
+/// True where two or more parameters of the plant are fitted and all of them are at their bounds,
+/// or, where an error remains, most of three or more: the plant is another, or bends to make up for
+/// what is missing.
 bool is_another_plant(const Diagnosis& diagnosis) {
   std::size_t count = 0;
+  std::size_t at_bound = 0;
   for (const ParameterValue& p : diagnosis.parameters) {
     if (p.name.find('.') != std::string::npos) continue;
-    if (!p.at_bound) return false;
     ++count;
+    if (p.at_bound) ++at_bound;
   }
-  return count > 1;
+  const bool error_remains = diagnosis.verdict == Verdict::unexplained;
+  return count > 1 &&
+         (at_bound == count || (error_remains && at_bound > 2 && 2 * at_bound > count));
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.

@@ -56,7 +56,7 @@ struct SelectionStep {
 struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   std::vector<std::string> missing;  ///< in the order added, laws with them
-  /// Those of `missing`: learned, undetermined, or, of an unexplained record, laws that come near.
+  /// The laws among `missing`: learned, undetermined, or near to what an unexplained record lacks.
   std::vector<Law> laws;
   std::vector<PossibleEffect> possible;             ///< those of `missing` that are not established
   std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names

@@ -34,7 +34,7 @@ struct LawSearch {
 /// Most laws of one model.
 inline constexpr std::size_t kMostLaws = 2;
 
-/// Those of the laws that are among the effects, in the order of these.
+/// The laws that are among the effects, in the order of these.
 [[nodiscard]] std::vector<Law> laws_among(const std::vector<Law>& laws,
                                           const std::vector<std::string>& effects);
 

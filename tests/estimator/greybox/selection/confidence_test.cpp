@@ -159,6 +159,17 @@ TEST(Confidence, ALawThatIsNotEstablishedAtTheFloorIsUndetermined) {
   }
 }
 
+TEST(Confidence, NothingIsEstablishedWhereMostOfThePlantIsAtItsBoundsAndAnErrorRemains) {
+  Diagnosis d = unexplained();
+  for (const char* name : {"bulk_modulus_Pa", "supply_pressure_Pa", "dead_volume_m3"})
+    d.parameters.push_back({name, 1.0, std::nan(""), true});
+  weigh_doubts(d);
+  EXPECT_THAT(d.established(), IsEmpty());
+  d.parameters.back().at_bound = false;
+  weigh_doubts(d);
+  EXPECT_THAT(d.established(), ElementsAre("friction"));
+}
+
 TEST(Confidence, NothingIsEstablishedBesideALawThatOnlyComesNear) {
   Diagnosis d = unexplained();
   weigh_doubts(d);
