@@ -104,7 +104,7 @@ class VelocityServo {
     const S from_m = state.y_m;
     drive_V_ = limits::known_V(u_V);
     drive_V_ = effects.command_V(drive_V_, [&] { return motion(state.drive_mps); });
-    const S goal_mps = effects.set_mps(parameters.gain_mps_per_V * drive_V_);
+    const S goal_mps = effects.set_mps(parameters.gain_mps_per_V * drive_V_, state.drive_mps);
     const S gap_mps = state.drive_mps - goal_mps;
     S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_.of_gap);
     S early_mps = gap_mps * early_.of_gap;

@@ -3,7 +3,7 @@
 //   |w'| <= limit      w follows the commanded speed, ahead of the servo's lag
 //
 // w  speed that the loop is given, m/s    limit  m/s^2
-// The first speed that is asked for is taken as it is; a step has the mean of w over it. Source:
+// w starts at the speed from which the servo starts; a step has the mean of w over it. Source:
 // ramp generator of a speed-controlled drive, Leonhard, Control of Electrical Drives, chapter 7.
 #pragma once
 
@@ -43,8 +43,8 @@ struct AccelerationLimit {
     void reset() { begun = false; }
   };
 
-  static S set_mps(const Parameters& p, Memory& memory, const S& asked_mps) {
-    if (!memory.begun) memory.held_mps = asked_mps;
+  static S set_mps(const Parameters& p, Memory& memory, const S& asked_mps, const S& moving_mps) {
+    if (!memory.begun) memory.held_mps = moving_mps;
     memory.begun = true;
     const S before_mps = memory.held_mps;
     const S most_mps = p.limit_mps2 * S(memory.step_s);

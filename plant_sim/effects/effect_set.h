@@ -52,10 +52,10 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
   /// Call exactly once per step, with command_V().
-  [[nodiscard]] S set_mps(S asked_mps) {
+  [[nodiscard]] S set_mps(S asked_mps, const S& moving_mps) {
     this->template for_each_active<Site::set_speed>(
         [&]<class T>(Tag<T>, const auto& p, auto& memory) {
-          asked_mps = T::set_mps(p, memory, asked_mps);
+          asked_mps = T::set_mps(p, memory, asked_mps, moving_mps);
         });
     return asked_mps;
   }

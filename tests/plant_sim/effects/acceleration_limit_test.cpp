@@ -19,7 +19,6 @@ Servo ramped(double tau_s) {
   set_effect(servo, "acceleration_limit", "limit_mps2", kLimit_mps2);
   servo.prepare(1e-3);
   servo.reset();
-  servo.step(0.0);
   return servo;
 }
 
