@@ -134,6 +134,8 @@ bool formulas_tie(const plant_sim::ModelFile& model, const FitSummary& fitted) {
 
 }  // namespace
 
+double pressure_scale_power(const std::string& name) { return power_of(name); }
+
 VectorXd pressure_scale(const plant_sim::ModelFile& model, const FitSummary& fitted) {
   const auto is_supply = [](const auto& one) { return one.name == "supply_pressure_Pa"; };
   if (std::none_of(model.parameters.begin(), model.parameters.end(), is_supply)) return {};

@@ -7,10 +7,15 @@
 // that sticks and slips are rough, and pass for information there.
 #pragma once
 
+#include <string>
+
 #include "estimator/greybox/fit.h"
 #include "plant_sim/model_file.h"
 
 namespace estimator::greybox {
+
+/// Power of the scale s with which a parameter changes; 0: it does not.
+[[nodiscard]] double pressure_scale_power(const std::string& name);
 
 /// d theta of that direction, of arbitrary length; empty where something ties the parameters to an
 /// absolute scale: one that is held or at its bound, a pressure that is given, a change, a formula

@@ -27,6 +27,8 @@ double LeftOut::force_N(double y_m, double v_mps, double t_s) const {
       return size * v_mps * square((y_m - kCentre_m) / 0.05);
     case Kind::direction_damping:
       return size * std::abs(v_mps);
+    case Kind::power_damping:
+      return std::copysign(size * std::pow(std::abs(v_mps), 1.5), v_mps);
     case Kind::load_step:
       return t_s >= where ? size : 0.0;
     default:
@@ -40,6 +42,10 @@ double LeftOut::opening_m(double open_m, double gain_m_per_V, double y_m, double
       return open_m * (1.0 + size * t_s / kRecord_s);
     case Kind::gain_curvature:
       return open_m * std::max(0.2, 1.0 - size * square(open_m / (gain_m_per_V * kFull_V)));
+    case Kind::gain_saturation:
+      return open_m / std::hypot(1.0, open_m / (gain_m_per_V * size));
+    case Kind::one_way_saturation:
+      return open_m / (1.0 + size * std::max(open_m, 0.0) / (gain_m_per_V * kFull_V));
     case Kind::underlap: {
       const double lap_m = size * gain_m_per_V;
       return std::abs(open_m) < lap_m ? 2.0 * open_m : open_m + std::copysign(lap_m, open_m);
@@ -203,6 +209,33 @@ const std::vector<LeftOutInfo>& left_out_table() {
        {"force", "flow"},
        {"time"},
        {}},
+      {Kind::power_damping,
+       "power_damping",
+       "F = s v sqrt|v|, N (s/m)^1.5",
+       8e3,
+       0,
+       0,
+       {"force"},
+       {"v", "speed"},
+       {"u"}},
+      {Kind::gain_saturation,
+       "gain_saturation",
+       "opening x / sqrt(1 + (opening/s)^2), V",
+       7,
+       0,
+       0,
+       {"gain", "flow"},
+       {"u"},
+       {"v", "speed"}},
+      {Kind::one_way_saturation,
+       "one_way_saturation",
+       "opening x / (1 + s opening/4 V) where it extends",
+       0.15,
+       0,
+       0,
+       {"gain", "flow"},
+       {"u", "direction"},
+       {"v", "speed"}},
   };
   return table;
 }

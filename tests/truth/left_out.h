@@ -31,6 +31,9 @@ struct LeftOut {
     underlap,
     position_gain,
     load_step,
+    power_damping,
+    gain_saturation,
+    one_way_saturation,
     elastic_shaft,
     open_centre,
   };

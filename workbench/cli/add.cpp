@@ -15,6 +15,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/present/printed_axis.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::cli {
 namespace {
@@ -63,6 +64,13 @@ void write_added(const AddOptions& options) {
   }
   if (added.neutral) {
     std::printf("  every value is neutral: no influence until one is given or fitted\n");
+  }
+  if (options.law != 0) {
+    const std::string written = present::shell_word(options.output);
+    std::printf(
+        "  the other values are those of %s, beside which the law was not fitted; next:\n"
+        "  spoolwatch fit %s RECORD -o %s\n",
+        options.model.c_str(), written.c_str(), written.c_str());
   }
 }
 

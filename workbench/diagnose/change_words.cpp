@@ -11,6 +11,16 @@
 
 namespace workbench::diagnose {
 
+namespace {
+
+/// To 10 ms, with the error where that is more.
+std::string time_words(const selection::ParameterChange& change) {
+  if (!(change.at_error_s > 0.005)) return fmt::format("{:.2f} s", change.at_s);
+  return config::units::words(config::units::quantity("at_s", change.at_s, change.at_error_s));
+}
+
+}  // namespace
+
 std::string change_words(const selection::ParameterChange& change) {
   const auto words = [&](double value, double error) {
     return config::units::words(config::units::quantity(change.parameter, value, error));
@@ -23,7 +33,7 @@ std::string change_words(const selection::ParameterChange& change) {
                      " to " + words(change.to, change.to_error);
   switch (change.kind) {
     case selection::ChangeKind::step:
-      return text + fmt::format(" at {:.2f} s", change.at_s);
+      return text + " at " + time_words(change);
     case selection::ChangeKind::ramp:
       return text + fmt::format(" between {:.1f} and {:.1f} s", change.at_s,
                                 change.at_s + change.duration_s);

@@ -1,5 +1,7 @@
 #include "workbench/diagnose/effect_words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -41,10 +43,27 @@ std::string second_mass_words(const selection::Diagnosis& diagnosis) {
   return text;
 }
 
+/// ": through 14 points, from -7200 to 4697"; empty for what is no curve.
+std::string curve_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
+  const bool is_curve = std::any_of(
+      diagnosis.laws.begin(), diagnosis.laws.end(),
+      [&](const selection::Law& law) { return law.effect.name == effect && law.effect.curve; });
+  std::vector<double> values;
+  for (const selection::ParameterValue& p : diagnosis.parameters) {
+    if (is_curve && p.name.rfind(effect + ".", 0) == 0) values.push_back(p.value);
+  }
+  if (values.empty()) return "";
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return fmt::format(": {} values from {} to {}", values.size(),
+                     config::units::three_digits(*least), config::units::three_digits(*most));
+}
+
 }  // namespace
 
 std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
   if (effect == "second_mass") return effect + second_mass_words(diagnosis);
+  const std::string curve = curve_words(diagnosis, effect);
+  if (!curve.empty()) return effect + curve;
   std::string text;
   for (const selection::ParameterValue& p : diagnosis.parameters) {
     if (p.name.rfind(effect + ".", 0) != 0) continue;

@@ -162,6 +162,12 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
     out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
                      (d.by_innovations ? "estimated with the model" : "the rounding alone"));
   }
+  const double given_step_s = outcome.prepared->problem.model.step_s;
+  if (d.better.step_s < given_step_s) {
+    out.push_back(fmt::format(
+        "simulated with steps of {:.2g} s: those of {:.2g} s that the model gives hide the motion",
+        d.better.step_s, given_step_s));
+  }
   if (d.has_coarse_step()) {
     out.push_back(fmt::format(
         "a quarter of the integration step changes the simulation by {}, {} times the noise "

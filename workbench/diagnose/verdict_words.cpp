@@ -124,7 +124,16 @@ std::string unexplained_words(const selection::Diagnosis& d) {
 std::string learned_words(const selection::Diagnosis& d) {
   std::vector<std::string> laws;
   for (const selection::Law& law : d.laws) laws.push_back(law_words(law));
-  return "Learned: no effect of the library explains the record, but " +
+  const std::vector<std::string> beside = d.established();
+  const std::string named = beside.empty() ? ""
+                                           : config::schema::listed(beside) +
+                                                 (beside.size() > 1 ? " are" : " is") +
+                                                 " missing, and beside ";
+  return "Learned: " + named +
+         (beside.empty()      ? ""
+          : beside.size() > 1 ? "them "
+                              : "it ") +
+         "no effect of the library explains the record, but " +
          config::schema::joined(laws, "; and ") + ".";
 }
 

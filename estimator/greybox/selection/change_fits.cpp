@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "estimator/greybox/selection/innovation_trials.h"
@@ -14,42 +15,76 @@ namespace {
 constexpr double kScanned_s = 1.0;
 constexpr double kScanStep = 4.0;
 constexpr int kScans = 3;
+/// Share of the record, from the time of a change on, in which other times are held against it, the
+/// ratio of their distances, and the errors within which a time is looked for.
+constexpr double kProfiled = 0.25;
+constexpr double kProfileStep = 1.2;
+constexpr double kThreeErrors = 3.0;
 /// Lag behind the best with the stage's gains, and as a share of what that gains, that a noise
 /// model of its own may make up for.
 constexpr double kWorthSettling_nats = 60.0;
 constexpr double kWorthSettling = 0.2;
 
+/// A value of one parameter, and what a fit with it costs, -2 ln of its likelihood.
+struct ScannedValue {
+  double theta;
+  double cost;
+};
+
+std::optional<Eigen::Index> row_of(const FitSummary& fitted, const std::string& name) {
+  const auto at = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
+                               [&](const FreeParameter& p) { return p.name == name; });
+  if (at == fitted.parameters.end()) return {};
+  return at - fitted.parameters.begin();
+}
+
+/// The costs of other values of a parameter, the other parameters held.
+std::vector<ScannedValue> scanned(const SearchContext& context, const FitSummary& fitted,
+                                  Eigen::Index row, const std::vector<double>& thetas) {
+  constexpr std::size_t kLanes = ObserverSimulation::kLanes;
+  const FitDataset& data = context.problem.data;
+  const FreeParameter& parameter = fitted.parameters[static_cast<std::size_t>(row)];
+  DatasetSimulation run(context.problem.model, data, fitted.parameters);
+  std::vector<ScannedValue> values;
+  Eigen::MatrixXd residuals_m;
+  for (std::size_t from = 0; from < thetas.size() && !context.cancelled(); from += kLanes) {
+    Eigen::MatrixXd points = fitted.theta.replicate(1, static_cast<Eigen::Index>(kLanes));
+    const std::size_t lanes = std::min(kLanes, thetas.size() - from);
+    for (std::size_t i = 0; i < lanes; ++i) {
+      points(row, static_cast<Eigen::Index>(i)) =
+          std::clamp(thetas[from + i], parameter.lower, parameter.upper);
+    }
+    run.residuals(points, residuals_m);
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const auto lane = static_cast<Eigen::Index>(i);
+      const double floor_m = data.noise_floor_m;
+      values.push_back(
+          {points(row, lane), residuals_m.col(lane).squaredNorm() / (floor_m * floor_m)});
+    }
+  }
+  return values;
+}
+
 /// Sets the time of a change to the likeliest within kScanned_s, the other parameters held: the
 /// likelihood has a minimum about every pause of the motion. False where it is that already.
 bool scan_time(const SearchContext& context, const std::string& name, FitSummary& fitted) {
-  const auto at = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
-                               [&](const FreeParameter& p) { return p.name == name; });
-  if (at == fitted.parameters.end()) return false;
-  const auto row = static_cast<Eigen::Index>(at - fitted.parameters.begin());
-  const double step = kScanStep * context.problem.data.sample_time_s / at->unit;
-  constexpr int kLanes = static_cast<int>(ObserverSimulation::kLanes);
-  const auto half = std::max(kLanes, static_cast<int>(kScanned_s / at->unit / step));
-  DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
-  double least = rms(fitted.residual_m, context.problem.data.training_mask);
-  double best = fitted.theta[row];
-  Eigen::MatrixXd residuals_m;
-  for (int from = -half; from <= half && !context.cancelled(); from += kLanes) {
-    Eigen::MatrixXd points = fitted.theta.replicate(1, kLanes);
-    for (int i = 0; i < kLanes; ++i) {
-      points(row, i) =
-          std::clamp(points(row, i) + step * std::min(from + i, half), at->lower, at->upper);
-    }
-    run.residuals(points, residuals_m);
-    for (int i = 0; i < kLanes; ++i) {
-      const double now = rms(residuals_m.col(i), context.problem.data.training_mask);
-      if (now >= least) continue;
-      least = now;
-      best = points(row, i);
-    }
+  const std::optional<Eigen::Index> row = row_of(fitted, name);
+  if (!row) return false;
+  const double unit_s = fitted.parameters[static_cast<std::size_t>(*row)].unit;
+  const double step = kScanStep * context.problem.data.sample_time_s / unit_s;
+  const double present = fitted.theta[*row];
+  const int half = static_cast<int>(kScanned_s / unit_s / step);
+  std::vector<double> thetas{present};
+  for (int i = -half; i <= half; ++i) {
+    if (i != 0) thetas.push_back(present + step * i);
   }
-  const bool moved = best != fitted.theta[row];
-  fitted.theta[row] = best;
-  return moved;
+  const std::vector<ScannedValue> values = scanned(context, fitted, *row, thetas);
+  if (values.empty()) return false;
+  fitted.theta[*row] =
+      std::min_element(values.begin(), values.end(), [](const auto& a, const auto& b) {
+        return a.cost < b.cost;
+      })->theta;
+  return fitted.theta[*row] != present;
 }
 
 /// A proposal fitted with the stage's gains.
@@ -125,6 +160,29 @@ InnovationStage polished(const ChangeProposal& taken, const InnovationStage& fou
     stage = std::move(other);
   }
   return stage;
+}
+
+double time_error_s(const InnovationStage& stage, const std::string& change) {
+  const FitSummary& fitted = stage.model.fitted;
+  const std::optional<Eigen::Index> row = row_of(fitted, change + ".at_s");
+  if (!row || stage.context.cancelled()) return 0.0;
+  const FitDataset& data = stage.context.problem.data;
+  const double unit_s = fitted.parameters[static_cast<std::size_t>(*row)].unit;
+  const double farthest_s =
+      kProfiled * static_cast<double>(data.records.front().size()) * data.sample_time_s;
+  const double present = fitted.theta[*row];
+  std::vector<double> thetas{present};
+  for (double by_s = data.sample_time_s; by_s < farthest_s; by_s *= kProfileStep) {
+    thetas.push_back(present - by_s / unit_s);
+    thetas.push_back(present + by_s / unit_s);
+  }
+  double error_s = 0.0;
+  const std::vector<ScannedValue> values = scanned(stage.context, fitted, *row, thetas);
+  for (const ScannedValue& value : values) {
+    const bool as_likely = value.cost < values.front().cost + kThreeErrors * kThreeErrors;
+    if (as_likely) error_s = std::max(error_s, std::abs(value.theta - present) * unit_s);
+  }
+  return kProfileStep * error_s / kThreeErrors;
 }
 
 }  // namespace estimator::greybox::selection

@@ -21,4 +21,9 @@ namespace estimator::greybox::selection {
 [[nodiscard]] InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,
                                        SimulationWidth width);
 
+/// Standard error of the time at which a change begins, s, by the likelihood's profile, the other
+/// parameters held: where nothing moves it is flat, and its curvature says nothing. 0 where the
+/// time is not free.
+[[nodiscard]] double time_error_s(const InnovationStage& stage, const std::string& change);
+
 }  // namespace estimator::greybox::selection

@@ -258,11 +258,16 @@ ChangeScore with_course_of(const ChangeScore& change, const FitSummary& fitted,
   return result;
 }
 
-ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted) {
-  ChangeScore step = ramp;
+ChangeScore step_within(const ChangeScore& course, const FitSummary& fitted) {
+  ChangeScore step = course;
+  const std::string own = name_of(course);
+  const double begins_s = fitted.value(own + ".at_s");
+  const double to_middle_s = course.kind == ChangeKind::ramp
+                                 ? 0.5 * fitted.value(own + ".ramp_s")
+                                 : fitted.value(own + ".time_constant_s");
   step.kind = ChangeKind::step;
   step.duration_s = 0.0;
-  step.at_s = fitted.value(name_of(ramp) + ".at_s") + 0.5 * fitted.value(name_of(ramp) + ".ramp_s");
+  step.at_s = (std::isfinite(begins_s) ? begins_s : course.at_s) + to_middle_s;
   return step;
 }
 

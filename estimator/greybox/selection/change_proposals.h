@@ -41,8 +41,8 @@ struct ChangeProposal {
 /// A change of another parameter with the course of a fitted one.
 [[nodiscard]] ChangeScore with_course_of(const ChangeScore& change, const FitSummary& fitted,
                                          const ChangeScore& other);
-/// A step in the middle of a fitted ramp.
-[[nodiscard]] ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted);
+/// A step in the middle of a fitted ramp, or a time constant after a fitted exponential begins.
+[[nodiscard]] ChangeScore step_within(const ChangeScore& course, const FitSummary& fitted);
 
 /// A change as fitted, its rivals apart; `errors` of the search values.
 [[nodiscard]] ParameterChange described(const ChangeScore& score, const FitSummary& fitted,

@@ -6,9 +6,11 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "estimator/greybox/held_scale.h"
+#include "estimator/greybox/selection/innovation_trials.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -22,6 +24,10 @@ constexpr Index kTimes = 400;
 constexpr double kFromEnds_s = 1.0;
 /// Time constants of warming up, as shares of the record.
 constexpr double kShares[] = {0.03, 0.1, 0.3};
+constexpr double kFromStart[] = {0.0};
+/// Where courses begin within the record, and how long ramps last there, as shares of it.
+constexpr double kBegins[] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+constexpr double kLasts[] = {0.1, 0.2, 0.3, 0.4, 0.6, 0.8};
 /// Size of an absent effect, in typical sizes, for the difference quotient.
 constexpr double kSmall = 0.05;
 /// Share of a column that must remain beside the model's own freedom.
@@ -196,6 +202,46 @@ void sort_by_gain(std::vector<ChangeScore>& scores) {
   });
 }
 
+/// A course from 0 to 1.
+struct CourseTimes {
+  ChangeKind kind;
+  double at_s;
+  double duration_s;  ///< a ramp's length, an exponential's time constant
+};
+
+ChangeScore course_score(const Course& course, const VectorXd& t_s, const CourseTimes& times,
+                         ChangeScore score) {
+  const auto since = (t_s.array() - times.at_s) / times.duration_s;
+  score.kind = times.kind;
+  score.at_s = times.at_s;
+  score.duration_s = times.duration_s;
+  course.score(times.kind == ChangeKind::ramp
+                   ? VectorXd(since.cwiseMax(0.0).cwiseMin(1.0).matrix())
+                   : VectorXd((-(-since.cwiseMax(0.0)).expm1()).matrix()),
+               score);
+  return score;
+}
+
+/// The likeliest course of a kind that begins and lasts such shares of the record; a ramp ends
+/// within it.
+ChangeScore best_course(const Course& course, const VectorXd& t_s, ChangeKind kind,
+                        std::span<const double> begins, std::span<const double> lasts,
+                        const ChangeScore& score) {
+  const double begin_s = t_s[0];
+  const double length_s = t_s[t_s.size() - 1] - begin_s;
+  ChangeScore best = score;
+  best.kind = kind;
+  for (const double begins_at : begins) {
+    for (const double share : lasts) {
+      if (kind == ChangeKind::ramp && begins_at + share > 1.0) break;
+      const ChangeScore one = course_score(
+          course, t_s, {kind, begin_s + begins_at * length_s, share * length_s}, score);
+      if (one.gain_nats > best.gain_nats) best = one;
+    }
+  }
+  return best;
+}
+
 std::vector<Index> step_times(const Dataset& record) {
   std::vector<Index> grid;
   const auto samples = static_cast<Index>(record.size());
@@ -217,7 +263,8 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
   const auto own = static_cast<Index>(stage.model.fitted.parameters.size());
   const MatrixXd basis = basis_of(columns.values.leftCols(own));
   const VectorXd rest = columns.rest - basis * (basis.transpose() * columns.rest);
-  const Eigen::Map<const VectorXd> t_s(record.t_s.data(), static_cast<Index>(record.size()));
+  const VectorXd t_s =
+      Eigen::Map<const VectorXd>(record.t_s.data(), static_cast<Index>(record.size()));
   const double begin_s = record.t_s.front();
   const double length_s = record.t_s.back() - begin_s;
   std::vector<ChangeScore> scores;
@@ -236,22 +283,20 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
       step.at_s = record.t_s[static_cast<std::size_t>(at)];
       scores.push_back(step);
     }
-    ChangeScore ramp = score;
-    ramp.kind = ChangeKind::ramp;
-    ramp.at_s = begin_s;
-    ramp.duration_s = length_s;
-    course.score((t_s.array() - begin_s).matrix() / length_s, ramp);
-    scores.push_back(ramp);
-    ChangeScore warming = score;
-    for (const double share : kShares) {
-      ChangeScore one = score;
-      one.kind = ChangeKind::exponential;
-      one.at_s = begin_s;
-      one.duration_s = share * length_s;
-      course.score(-((begin_s - t_s.array()) / one.duration_s).expm1().matrix(), one);
-      if (one.gain_nats > warming.gain_nats) warming = one;
-    }
+    const ChangeScore throughout =
+        course_score(course, t_s, {ChangeKind::ramp, begin_s, length_s}, score);
+    scores.push_back(throughout);
+    const ChangeScore warming =
+        best_course(course, t_s, ChangeKind::exponential, kFromStart, kShares, score);
     scores.push_back(warming);
+    // those that begin later have a parameter more
+    for (const ChangeScore& plain : {throughout, warming}) {
+      const bool is_ramp = plain.kind == ChangeKind::ramp;
+      const ChangeScore later = is_ramp
+                                    ? best_course(course, t_s, plain.kind, kBegins, kLasts, score)
+                                    : best_course(course, t_s, plain.kind, kBegins, kShares, score);
+      if (later.gain_nats > plain.gain_nats + kEvidence_nats) scores.push_back(later);
+    }
   }
   sort_by_gain(scores);
   return scores;

@@ -26,6 +26,8 @@ constexpr double kEnds = 0.01;
 constexpr double kEdge_samples = 10.0;
 /// Twice the gain over a ramp from which on an exponential that has not settled is no ramp.
 constexpr double kNoRamp_nats = 20.0 * kEvidence_nats;
+/// Time constant, as a share of the record, below which an exponential may be a step.
+constexpr double kSudden = 0.02;
 /// Time constants after which an exponential has settled.
 constexpr double kSettledAfter = 3.0;
 
@@ -86,6 +88,13 @@ bool ends_beyond(const Dataset& record, const ChangeProposal& change,
   return kSettledAfter * time_constant_s > record.t_s.back() - begin_s;
 }
 
+/// True for an exponential that may be a step: all motion about it fits in little of the record.
+bool is_sudden(const Dataset& record, const ChangeProposal& change, const InnovationStage& fitted) {
+  const double time_constant_s =
+      fitted.model.fitted.value(name_of(change.score) + ".time_constant_s");
+  return time_constant_s < kSudden * (record.t_s.back() - record.t_s.front());
+}
+
 /// Adds the likeliest change; false when none gains enough.
 bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& starts,
                 InnovationStage& stage, ChangeSearch& search,
@@ -133,6 +142,15 @@ bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& s
     if (penalised(stages[ramp]) < most) chosen = ramp;
   }
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
+  if (is_sudden(record, proposals[chosen], stages[chosen])) {
+    // its time is near enough now for a step to be found
+    const SimulationWidth width = wide(plain.options.threads);
+    stages[chosen] = polished(proposals[chosen], stages[chosen], width);
+    const std::size_t step =
+        also(step_within(proposals[chosen].score, stages[chosen].model.fitted));
+    stages[step] = polished(proposals[step], stages[step], width);
+    if (penalised(stages[step]) < penalised(stages[chosen]) + 2.0 * kRivals_nats) chosen = step;
+  }
   // what explained much by a course of its own may be a rival by the chosen one
   for (const std::size_t i : contenders(proposals, stages, chosen, penalised(stage))) {
     also(with_course_of(proposals[chosen].score, stages[chosen].model.fitted, proposals[i].score));
@@ -165,6 +183,10 @@ ChangeSearch concluded(ChangeSearch search, InnovationStage stage,
   for (std::size_t i = 0; i < taken.size(); ++i) {
     std::vector<std::string> rivals = std::move(search.changes[i].rivals);
     search.changes[i] = described(taken[i], fitted, errors);
+    const double profile_s = time_error_s(stage, name_of(taken[i]));
+    double& at_error_s = search.changes[i].at_error_s;
+    // where nothing moves a fit has no curvature
+    at_error_s = std::isinf(at_error_s) ? profile_s : std::max(at_error_s, profile_s);
     search.changes[i].rivals = std::move(rivals);
   }
   search.innovations.final = std::move(stage);

@@ -20,6 +20,8 @@
 #include "estimator/greybox/selection/screening_memo.h"
 #include "estimator/greybox/selection/search_beginning.h"
 #include "estimator/greybox/selection/settled_memo.h"
+#include "estimator/greybox/selection/simulated_laws.h"
+#include "estimator/greybox/selection/step_error.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -136,7 +138,10 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const bool worse = !(held.validation_rms_m <= expected_m) &&
                      !(understood && follows_motion(search, innovations.final, expected_m));
   if (context.cancelled() || (!worse && understood)) {
-    if (!prefer_law(search, first, innovations, result)) take_innovations();
+    if (!prefer_law(search, first, innovations, result) &&
+        !prefer_curve(search, first, innovations, result)) {
+      take_innovations();
+    }
     return;
   }
   if (held.validation_rms_m <= kUnexplained * search.problem.data.noise_floor_m) {
@@ -258,7 +263,10 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   }
   if (times == CommandTimes::may_lead)
     result.command_lead_samples = take_command_lead(context, search, start);
-  if (widen_file_values(search, start, context.problem)) search = for_search(context);
+  if (prefer_other_file_values(search, start, context.problem) ||
+      widen_file_values(search, start, context.problem)) {
+    search = for_search(context);
+  }
   const ModelStage first = start.first;
   if (!(first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m))
     result.checks.reset();
@@ -266,6 +274,9 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
     conclude(context, search, result);
+  } else if (explain_by_laws(search, start, result)) {
+    if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
+    return;
   } else if (leaves_noise(search, start.branch.stage)) {
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
@@ -286,10 +297,8 @@ bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
          result.final.value(kDelay) > kUndone * lead_s;
 }
 
-}  // namespace
-
-Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+/// The diagnosis with the integration step of the problem's model.
+Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   SearchContext context{problem, options, std::make_shared<SettledMemo>(),
                         std::make_shared<ScreeningMemo>()};
   Diagnosis result;
@@ -322,6 +331,34 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     }
   }
   weigh_doubts(result);
+  return result;
+}
+
+/// Share of the error that a finer step has to leave at most where it does not explain the record.
+constexpr double kFinerLeaves = 0.8;
+
+/// Diagnoses a record that is unexplained again with a finer step where the step's error is no
+/// small matter: stick-slip hides what is missing beside it.
+void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& options,
+                 Diagnosis& result) {
+  const bool cancelled = options.cancel && options.cancel();
+  if (result.verdict != Verdict::unexplained || !result.has_coarse_step() || cancelled) return;
+  DiagnosisProblem finer = problem;
+  finer.model.step_s *= kFinerStep;
+  Diagnosis again = diagnose_by_steps(finer, options);
+  if (options.cancel && options.cancel()) return;
+  if (again.verdict != Verdict::unexplained ||
+      again.rms_after_m < kFinerLeaves * result.rms_after_m) {
+    result = std::move(again);
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis result = diagnose_by_steps(problem, options);
+  refine_step(problem, options, result);
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/learned_laws.h"
+#include "estimator/greybox/selection/simulated_laws.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -57,7 +58,8 @@ bool explain_beyond_effects(const SearchContext& context, const SearchStart& sta
       (held_nats > beyond_nats && explains_record(context, stage, held))) {
     return false;
   }
-  if (law_first && learn_law_early(context, first, stage, held, result)) {
+  if (law_first && (explain_by_laws(context, start, result) ||
+                    learn_law_early(context, first, stage, held, result))) {
     return true;
   }
   return change_first && date_changes_early(context, first, stage, held, result);

@@ -21,23 +21,28 @@ bool of_prior(double end, double prior_sd) {
   return std::abs(std::abs(end) - kPriorRange_sds * prior_sd) < 1e-9;
 }
 
-/// Widens the range at the end that theta has reached, as far as the plant's own limits allow.
-bool widen(const plant_sim::PlantInfo& plant, double theta, FreeParameter& p) {
+/// The plant's parameter of that name; null for one of an effect.
+const plant_sim::ParameterInfo* find_info(const plant_sim::PlantInfo& plant,
+                                          const std::string& name) {
   const auto info = std::find_if(plant.parameters.begin(), plant.parameters.end(),
-                                 [&](const auto& one) { return one.name == p.name; });
-  if (info == plant.parameters.end()) return false;
-  const double margin = kAtEnd * p.prior_sd;
-  if (theta >= p.upper - margin && of_prior(p.upper, p.prior_sd)) {
-    p.upper = std::min(kWider * p.upper, p.to_theta(info->max));
-    return true;
-  }
-  if (theta <= p.lower + margin && of_prior(p.lower, p.prior_sd)) {
-    p.lower =
-        info->min > 0.0 ? std::max(kWider * p.lower, p.to_theta(info->min)) : kWider * p.lower;
-    return true;
-  }
-  return false;
+                                 [&](const auto& one) { return one.name == name; });
+  return info == plant.parameters.end() ? nullptr : &*info;
 }
+
+/// Widens an end of the range that is the prior's own, as far as the plant's limits allow.
+bool widen_upper(const plant_sim::ParameterInfo& info, double times, FreeParameter& p) {
+  if (!of_prior(p.upper, p.prior_sd)) return false;
+  p.upper = std::min(times * p.upper, p.to_theta(info.max));
+  return true;
+}
+bool widen_lower(const plant_sim::ParameterInfo& info, double times, FreeParameter& p) {
+  if (!of_prior(p.lower, p.prior_sd)) return false;
+  p.lower = info.min > 0.0 ? std::max(times * p.lower, p.to_theta(info.min)) : times * p.lower;
+  return true;
+}
+
+/// True for a value that is more than a guess.
+bool is_known(const FreeParameter& p) { return p.prior_sd > 0.0 && p.prior_sd <= kGuess; }
 
 }  // namespace
 
@@ -45,13 +50,30 @@ bool widen_strained(const ModelStage& stage, DiagnosisProblem& problem) {
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(problem.model.plant);
   bool any = false;
   for (FreeParameter& p : problem.plant_parameters) {
-    if (!(p.prior_sd > 0.0 && p.prior_sd <= kGuess)) continue;
+    const plant_sim::ParameterInfo* const info = find_info(plant, p.name);
+    if (!is_known(p) || info == nullptr) continue;
     for (std::size_t i = 0; i < stage.fitted.parameters.size(); ++i) {
       if (stage.fitted.parameters[i].name != p.name) continue;
-      if (widen(plant, stage.fitted.theta[static_cast<Eigen::Index>(i)], p)) any = true;
+      const double theta = stage.fitted.theta[static_cast<Eigen::Index>(i)];
+      const double margin = kAtEnd * p.prior_sd;
+      if (theta >= p.upper - margin) {
+        any |= widen_upper(*info, kWider, p);
+      } else if (theta <= p.lower + margin) {
+        any |= widen_lower(*info, kWider, p);
+      }
     }
   }
   return any;
+}
+
+void widen_all(double times, DiagnosisProblem& problem) {
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(problem.model.plant);
+  for (FreeParameter& p : problem.plant_parameters) {
+    const plant_sim::ParameterInfo* const info = find_info(plant, p.name);
+    if (!is_known(p) || info == nullptr) continue;
+    (void)widen_upper(*info, times, p);
+    (void)widen_lower(*info, times, p);
+  }
 }
 
 }  // namespace estimator::greybox::selection

@@ -14,4 +14,8 @@ namespace estimator::greybox::selection {
 /// false where there are none. Ends that a user or the plant has set stay.
 bool widen_strained(const ModelStage& stage, DiagnosisProblem& problem);
 
+/// Makes the ranges of all plant parameters that are more than guesses so many times as wide, the
+/// priors unchanged; ends that a user or the plant has set stay.
+void widen_all(double times, DiagnosisProblem& problem);
+
 }  // namespace estimator::greybox::selection

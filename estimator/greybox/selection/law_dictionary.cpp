@@ -157,6 +157,11 @@ class Dictionary {
     add("exponential_damping", "damping that rises exponentially with the speed", "force",
         "force_N * sign(v_mps) * (exp(min(abs(v_mps) / width_mps, 30)) - 1)",
         {size("force_N", 0.3 * force_N, Sign::positive), width("width_mps", v)}, {"v"});
+    add("power_damping", "damping with a power of the speed, 1.75 in turbulent pipes", "force",
+        fmt::format("force_N * sign(v_mps) * (abs(v_mps) / {})^exponent", rounded(v)),
+        {size("force_N", force_N, Sign::positive),
+         {"exponent", "power of the speed", 0.2, 5.0, 2.0, 1.5}},
+        {"v"});
     add("loose_spring", "spring with a gap in which it is without force", "force",
         "stiffness_N_per_m * (max(y_m - rest_m - gap_m, 0) + min(y_m - rest_m + gap_m, 0))",
         {size("stiffness_N_per_m", force_N / y, Sign::positive), rest(), width("gap_m", 0.5 * y)},

@@ -64,6 +64,11 @@ struct Attempt {
   bool is_not_alone = false;  ///< more points leave hardly less: something else is missing too
 };
 
+/// True where a parameter of the plant that is free sets the level of the curve.
+bool plant_has_level(const CurvePlace& place, const FitSummary& fitted) {
+  return place.times == "v_mps" && std::isfinite(fitted.value("damping_N_s_per_m"));
+}
+
 /// The stage with the curve, which begins at zero.
 InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
   ModelStage model = stage.model;
@@ -77,8 +82,8 @@ InnovationStage fitted(const Attempt& attempt, const InnovationStage& stage) {
     if (speed_mps > 0.0) own[i].lower = 0.0;
     if (speed_mps < 0.0) own[i].upper = 0.0;
   }
-  // a rise of the whole level is the friction's: the curve is none in the middle
-  if (place.site == kFrictionLevel)
+  // the whole level is the friction's, or the plant's: the curve is none in the middle
+  if (place.site == kFrictionLevel || plant_has_level(place, model.fitted))
     own.erase(own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2));
   // what a curve shares with the model's own parameters, a slope with a gain, is the model's
   for (FreeParameter& p : own) p.prior_sd = kPriorSizes;

@@ -25,6 +25,9 @@ constexpr std::size_t kBeforeLaws = 2;
 constexpr double kCurveForNames = 0.8;
 /// Share of the error that is left, below which laws that do not explain the record are of use.
 constexpr double kApproximates = 0.5;
+/// Promise of a curve over what effects gain, from which on it is sought in their place: a linear
+/// estimate promises a third of what the law gains.
+constexpr double kCurveForEffects = 0.25;
 /// Most laws and effects together that an early search tries.
 constexpr std::size_t kMostEarly = 3;
 
@@ -58,29 +61,6 @@ void locate_laws(const LawSearch& found, const Diagnosis& before, Diagnosis& lea
   }
   learned.where = std::move(where);
   learned.where_is_whole = true;
-}
-
-/// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
-bool take_laws(const SearchContext& context, const ModelStage& first, const LawSearch& found,
-               const Diagnosis& before, Diagnosis& result) {
-  Diagnosis learned = begun(before);
-  conclude(found.context, found.context, first, found.innovations, learned);
-  const auto is_size = [&](const ParameterValue& p) {
-    return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {
-      return !law.effect.curve &&
-             p.name == law.effect.name + "." + law.effect.parameters.front().name;
-    });
-  };
-  for (const ParameterValue& p : learned.parameters) {
-    if (!is_size(p)) continue;
-    if (p.at_bound || !(std::abs(p.value) > kClearOfError * p.std_error)) return false;
-  }
-  if (learned.verdict == Verdict::unexplained) return false;
-  learned.verdict = Verdict::learned;
-  take_as_they_are(context, found.laws, learned);
-  locate_laws(found, before, learned);
-  result = std::move(learned);
-  return true;
 }
 
 /// The site of the laws that may stand where an effect does: what a valve lets through changes with
@@ -137,6 +117,28 @@ bool seek_laws(const SearchContext& context, const ModelStage& first,
 }
 
 }  // namespace
+
+bool take_laws(const SearchContext& context, const ModelStage& first, const LawSearch& found,
+               const Diagnosis& before, Diagnosis& result) {
+  Diagnosis learned = begun(before);
+  conclude(found.context, found.context, first, found.innovations, learned);
+  const auto is_size = [&](const ParameterValue& p) {
+    return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {
+      return !law.effect.curve &&
+             p.name == law.effect.name + "." + law.effect.parameters.front().name;
+    });
+  };
+  for (const ParameterValue& p : learned.parameters) {
+    if (!is_size(p)) continue;
+    if (p.at_bound || !(std::abs(p.value) > kClearOfError * p.std_error)) return false;
+  }
+  if (learned.verdict == Verdict::unexplained) return false;
+  learned.verdict = Verdict::learned;
+  take_as_they_are(context, found.laws, learned);
+  locate_laws(found, before, learned);
+  result = std::move(learned);
+  return true;
+}
 
 double most_error_ratio(const Diagnosis& learned, const Diagnosis& before, bool slow_log) {
   const bool formulas = std::none_of(learned.laws.begin(), learned.laws.end(),
@@ -243,6 +245,18 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
   return found && found->explains_record() &&
          found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
+         take_laws(context, first, *found, result, result);
+}
+
+bool prefer_curve(const SearchContext& context, const ModelStage& first,
+                  const InnovationSearch& innovations, Diagnosis& result) {
+  const InnovationStage& named = innovations.final;
+  if (context.problem.effects_only || named.model.added.empty() || context.cancelled())
+    return false;
+  const double gained_nats = 0.5 * (penalised(innovations.before) - penalised(named));
+  if (!(largest_curve_nats(innovations.before) > kCurveForEffects * gained_nats)) return false;
+  const std::optional<LawSearch> found = search_curve(context, first);
+  return found && penalised(found->innovations.final) < penalised(named) - 2.0 * kRivals_nats &&
          take_laws(context, first, *found, result, result);
 }
 

@@ -15,6 +15,11 @@ namespace estimator::greybox::selection {
 [[nodiscard]] double most_error_ratio(const Diagnosis& learned, const Diagnosis& before,
                                       bool slow_log);
 
+/// Concludes with laws where each is clear of its error and no physics is left; the places of the
+/// error are those of `before`. False: `result` is as before.
+[[nodiscard]] bool take_laws(const SearchContext& context, const ModelStage& first,
+                             const LawSearch& found, const Diagnosis& before, Diagnosis& result);
+
 /// Takes laws, or else a curve, where no effect explains the record and they leave clearly less.
 /// They stand alone or beside the effects of `result`, or of the model that the innovations chose,
 /// `likeliest`. False: `result` is as before, and `approximate` are laws, if any, beside which
@@ -50,5 +55,10 @@ void approximate_by_laws(const SearchContext& context, const ModelStage& first,
 /// False: `result` is as before.
 [[nodiscard]] bool prefer_law(const SearchContext& context, const ModelStage& first,
                               const InnovationSearch& innovations, Diagnosis& result);
+
+/// Takes a curve where one promises more than all effects found gain, and is clearly likelier than
+/// they: a narrow resonance or a random force may stand in for a law. False: `result` is as before.
+[[nodiscard]] bool prefer_curve(const SearchContext& context, const ModelStage& first,
+                                const InnovationSearch& innovations, Diagnosis& result);
 
 }  // namespace estimator::greybox::selection

@@ -12,8 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFiner = 0.25;
-
 VectorXd residuals(const plant_sim::ModelFile& model, const FitDataset& data,
                    const FitSummary& fitted, double observer_per_s) {
   DatasetSimulation run(model, data, fitted.parameters, observer_per_s);
@@ -32,7 +30,7 @@ StepError step_error(const SearchContext& context, const FitSummary& fitted,
   if (context.cancelled() || fitted.jacobian.cols() != count) return result;
   const FitDataset& data = context.problem.data;
   plant_sim::ModelFile finer = context.problem.model;
-  finer.step_s *= kFiner;
+  finer.step_s *= kFinerStep;
   const VectorXd change_m = residuals(finer, data, fitted, observer_per_s) -
                             residuals(context.problem.model, data, fitted, observer_per_s);
   if (!change_m.allFinite()) return result;

@@ -18,4 +18,7 @@ struct StepError {
 [[nodiscard]] StepError step_error(const SearchContext& context, const FitSummary& fitted,
                                    const Eigen::VectorXd& weights, double observer_per_s);
 
+/// Share of the integration step that is held against it.
+inline constexpr double kFinerStep = 0.25;
+
 }  // namespace estimator::greybox::selection

@@ -276,6 +276,10 @@ SearchStart start_search(const SearchContext& context) {
   return start;
 }
 
+void add_effects(const SearchContext& context, SearchBranch& branch, std::size_t most) {
+  extend_branch(context, branch, false, most);
+}
+
 void add_second_effect(const SearchContext& context, SearchStart& start) {
   if (!start.branch.stalled) extend_branch(context, start.branch, false, kBeforePairSearch);
 }

@@ -92,6 +92,8 @@ struct SearchStart {
   double preview_s = 0.0;
 };
 [[nodiscard]] SearchStart start_search(const SearchContext& context);
+/// Rounds of single effects, until the branch has `most` of them, explains the record, or stalls.
+void add_effects(const SearchContext& context, SearchBranch& branch, std::size_t most);
 /// A second effect beside the first, where one helps at all.
 void add_second_effect(const SearchContext& context, SearchStart& start);
 /// Begins with a pair of effects instead, where one explains the record, alone or with what helps

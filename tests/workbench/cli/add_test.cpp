@@ -248,7 +248,9 @@ TEST_F(AddLawTest, TakesACurveWithItsTable) {
 }
 
 TEST_F(AddLawTest, TakesTheLawWithItsFittedValue) {
-  EXPECT_THAT(add({axis_, "--law", "1", "--from", diagnosis()}), HasSubstr("with cubic_damping"));
+  const std::string said = add({axis_, "--law", "1", "--from", diagnosis()});
+  EXPECT_THAT(said, HasSubstr("with cubic_damping"));
+  EXPECT_THAT(said, HasSubstr("spoolwatch fit " + out().string() + " RECORD -o "));
   auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
   EXPECT_EQ(*plant->parameter("cubic_damping.c"), 812.5);
   const auto declared = plant_sim::load_model(out()).formula_effects.at(0);

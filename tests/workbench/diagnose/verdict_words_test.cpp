@@ -4,6 +4,7 @@
 
 #include "tests/workbench/diagnose/example_outcome.h"
 #include "workbench/diagnose/advice_words.h"
+#include "workbench/diagnose/effect_words.h"
 
 namespace workbench::diagnose {
 
@@ -40,6 +41,42 @@ TEST(VerdictWords, LawsThatComeNearAreNoAnswer) {
       verdict_words(d),
       AllOf(HasSubstr("Unexplained: "), HasSubstr("no effect of the library explains it"),
             HasSubstr("The nearest law: weight on an arm: F = force_N * sin(y_m / arm_m).")));
+}
+
+TEST(VerdictWords, AnEffectBesideALearnedLawIsMissing) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::learned;
+  d.possible.clear();
+  plant_sim::formula::FormulaEffect drag;
+  drag.name = "drag";
+  drag.what = "drag of the guide";
+  d.laws = {{drag, {"v"}}};
+  d.missing = {"drag"};
+  EXPECT_THAT(
+      verdict_words(d),
+      HasSubstr("Learned: no effect of the library explains the record, but drag of the guide"));
+  d.missing = {"deadband", "drag"};
+  EXPECT_THAT(verdict_words(d),
+              HasSubstr("Learned: deadband is missing, and beside it no effect of the library "
+                        "explains the record, but drag of the guide"));
+}
+
+TEST(EffectWords, ACurveIsItsRange) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  plant_sim::formula::FormulaEffect curve;
+  curve.name = "force_over_y";
+  curve.curve.emplace();
+  d.laws = {{curve, {"y"}}};
+  d.parameters.clear();
+  for (const double value : {-72.0, 3.0, 47.5}) {
+    selection::ParameterValue p;
+    p.name = "force_over_y.f" + std::to_string(d.parameters.size() + 1);
+    p.value = value;
+    d.parameters.push_back(p);
+  }
+  EXPECT_EQ(effect_words(d, "force_over_y"), "force_over_y: 3 values from -72 to 47.5");
 }
 
 TEST(AdviceWords, AServoIsAskedForItsSpeedAndNotForASpool) {

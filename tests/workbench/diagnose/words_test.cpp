@@ -1,6 +1,5 @@
 // The sentences on a diagnosis, for every verdict.
 #include "workbench/diagnose/words.h"
-#include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/verdict_words.h"
@@ -362,25 +361,6 @@ TEST(Words, NextCommandTakesAFinerStepWhereTheStepIsCoarse) {
   outcome.input.command = "spoolwatch diagnose rig.toml --set step_s=0.001 bench.csv";
   EXPECT_EQ(next_command(outcome),
             "spoolwatch diagnose rig.toml --set step_s=0.00025 bench.csv -o better.toml");
-}
-
-TEST(Words, StepsNameWhatChangesAndInWhichRecord) {
-  EXPECT_EQ(step_name("friction + backlash"), "friction + backlash");
-  EXPECT_EQ(step_name("change.mass_kg"), "mass_kg that changes");
-  EXPECT_EQ(step_name("friction + change.mass_kg@b.csv"), "friction + mass_kg of b.csv");
-}
-
-TEST(Words, ADifferenceBetweenRecordsNamesTheRecordThatDiffers) {
-  selection::ParameterChange change;
-  change.kind = selection::ChangeKind::record;
-  change.parameter = "mass_kg";
-  change.record = "b.csv";
-  change.from = 50.0;
-  change.from_error = 0.5;
-  change.to = 60.0;
-  change.to_error = 0.5;
-  EXPECT_EQ(change_words(change),
-            "mass_kg is 60.0 +- 0.5 kg in b.csv and 50.0 +- 0.5 kg elsewhere");
 }
 
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {

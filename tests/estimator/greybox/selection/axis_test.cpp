@@ -111,6 +111,20 @@ TEST(AxisGain, ThatIsSteadyDoesNotChange) {
   EXPECT_EQ(diagnose(context.problem, context.options).verdict, Verdict::nothing_missing);
 }
 
+// A narrow resonance and a slow random force passed for it; and its level is the plant's damping,
+// which alone sets the error of all points together.
+TEST(Axis, ADampingThatRisesAboutAPlaceIsLearnedAsACurve) {
+  const auto tight = [](double v_mps, double y_m) {
+    return 120.0 * v_mps * std::exp(-std::pow((y_m - 0.02) / 0.05, 2));
+  };
+  const SearchContext context = context_of(axis_record(kSteady, 0.0, tight));
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  EXPECT_THAT(d.missing, ElementsAre("force_over_y_times_v"));
+  EXPECT_LT(d.rms_after_m, 1.15 * d.noise_floor_m);
+  EXPECT_FALSE(d.disturbance && d.disturbance->value > 0.1);  // N
+}
+
 // Nothing but mass and damping, 0.47 s here, brings the speed back that a simulation starts with.
 TEST(Axis, IsHealthyInARecordThatBeginsInMotionAndHasAGap) {
   config::record::Record record = axis_record(kSteady, 0.0);

@@ -14,6 +14,7 @@
 namespace estimator::greybox::selection {
 namespace {
 
+using diagnose_test::Command;
 using diagnose_test::context_of;
 using diagnose_test::kServoGain;
 using diagnose_test::servo_context;
@@ -196,6 +197,27 @@ TEST(Changes, AParameterThatTheFileChangesGetsNoSecondChange) {
   for (const ParameterChange& change : found->changes) {
     EXPECT_NE(change.parameter, "gain_mps_per_V");
   }
+}
+
+// Any time in the pause explains the record as well.
+TEST(Changes, AStepInAPauseIsDatedToThePause) {
+  const Command pausing = [hold = 0](double level, double y_m) mutable {
+    ++hold;  // of 0.15 s
+    return hold > 80 && hold <= 100 ? 0.0 : diagnose_test::pulling_back(level, y_m);
+  };
+  const SearchContext context = servo_context(
+      {.rate_mps = [](double u_V, double,
+                      double t_s) { return kServoGain * (t_s < 14.2 ? 1.0 : 1.03) * u_V; },
+       .command_V = pausing});
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  const ParameterChange& change = found->changes.front();
+  EXPECT_EQ(change.parameter, "gain_mps_per_V");
+  EXPECT_NEAR(change.at_s, 14.2, 3.0 * change.at_error_s);
+  EXPECT_GT(change.at_error_s, 0.3);
+  EXPECT_LT(change.at_error_s, 1.2);
 }
 
 TEST(Changes, ATimeSince1970IsDatedAsWell) {

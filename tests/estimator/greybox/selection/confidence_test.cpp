@@ -305,6 +305,9 @@ TEST(Confidence, AnEffectThatEntersAsTheRestDoesIsEstablishedWhereLittleRemains)
   EXPECT_THAT(named(with_friction(1.5e-3, "force")), ElementsAre("friction stand_in"));
   EXPECT_THAT(named(with_friction(1.5e-3, "measurement")), IsEmpty());
   EXPECT_THAT(named(with_friction(2.5e-3, "force")), IsEmpty());
+  Diagnosis far = with_friction(2.5e-3, "force");
+  far.noise_floor_m = 0.9e-6;  // 111 times that remains
+  EXPECT_THAT(named(far), ElementsAre("friction stand_in"));
 }
 
 TEST(Confidence, AnEffectThatACurveElsewhereMatchesIsNotEstablished) {

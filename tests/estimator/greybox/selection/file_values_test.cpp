@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/search_beginning.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
@@ -56,6 +59,55 @@ TEST(FileValues, AnEndThatTheUserSetStays) {
   EXPECT_TRUE(widen_strained(with_gain_off(problem, -3.0), problem));
   EXPECT_EQ(gain.upper, 0.5 * gain.prior_sd);
   EXPECT_NEAR(gain.lower, 2.0 * lower, 1e-12);
+}
+
+/// The truth generator's single rod in the product's words, its supply known to 3 %.
+DiagnosisProblem single_rod(const std::string& spec) {
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/single_rod_cylinder.toml");
+  *model.value("cap_area_m2") = 20e-4;
+  *model.value("rod_side_area_m2") = 12e-4;
+  *model.value("stroke_m") = 0.61;
+  *model.value("damping_N_s_per_m") = 3000.0;
+  const truth::Record truth = truth::simulate(truth::parse_case(spec, 41));
+  DiagnosisProblem problem =
+      make_problem(model, fit_dataset({diagnose_test::dataset_of(truth)}, {}));
+  FreeParameter& supply = parameter(problem, "supply_pressure_Pa");
+  supply.prior_sd = 0.03;
+  supply.upper = 3.0 * supply.prior_sd;
+  supply.lower = -supply.upper;
+  return problem;
+}
+
+TEST(FileValues, AGainFarBelowTheFileMakesEffectsSuperfluous) {
+  constexpr double kOff = 0.85;  // 5.4 standard deviations
+  SearchContext context =
+      diagnose_test::servo_context({.rate_mps = diagnose_test::with_offset(0.0), .samples = 2400});
+  const double gain_mps_per_V = diagnose_test::kServoGain / kOff;
+  for (FreeParameter& p : context.problem.plant_parameters) {
+    if (p.name != "gain_mps_per_V") continue;
+    p.unit = gain_mps_per_V;
+    p.prior_sd = 0.03;
+    p.upper = 3.0 * p.prior_sd;
+    p.lower = -p.upper;
+  }
+  *context.problem.model.value("gain_mps_per_V") = gain_mps_per_V;
+  SearchStart start = start_search(context);
+  EXPECT_FALSE(is_explained(context, start.first));
+  DiagnosisProblem problem = context.problem;
+  ASSERT_TRUE(prefer_other_file_values(context, start, problem));
+  EXPECT_THAT(start.branch.stage.added, testing::IsEmpty());
+  EXPECT_NEAR(start.first.fitted.value("gain_mps_per_V"), diagnose_test::kServoGain, 1e-4);
+  EXPECT_FALSE(prefer_other_file_values({problem, {}}, start, problem)) << "nothing to give up";
+}
+
+TEST(FileValues, AForceIsNotTakenForASupplyFarBelowTheFile) {
+  const DiagnosisProblem problem =
+      single_rod("rig=single_rod,motion=multisine,length_s=20,load_force.force_N=400");
+  const Diagnosis d = diagnose(problem, {});
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("load_force"));
+  EXPECT_NEAR(d.final.value("load_force.force_N"), 400.0, 40.0);
 }
 
 TEST(LongFileValues, AGainFarOffIsNoEffectBesideADeadBand) {

@@ -52,6 +52,32 @@ TEST(ServoLaws, AGainThatSaturatesIsAFormula) {
   EXPECT_NEAR(value(d, "gain_mps_per_V"), kServoGain, 1e-3 * kServoGain);
 }
 
+TEST(ServoLaws, AGainThatSaturatesAsARootIsAnotherFormula) {
+  constexpr double kFull_V = 1.2;
+  const Diagnosis d =
+      diagnosed({.rate_mps =
+                     [](double u_V, double, double) {
+                       return kServoGain * u_V / std::sqrt(1.0 + std::pow(u_V / kFull_V, 2));
+                     },
+                 .samples = 2400});
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  EXPECT_THAT(d.missing, ElementsAre("root_saturation"));
+  EXPECT_NEAR(value(d, "gain_mps_per_V"), kServoGain, 1e-3 * kServoGain);
+}
+
+TEST(ServoLaws, ASpringToWhichTheServoYieldsIsAFormula) {
+  constexpr double kRate_per_s = 0.4;
+  constexpr double kRest_m = 0.27;
+  const Diagnosis d = diagnosed(
+      {.rate_mps = [](double u_V, double y_m,
+                      double) { return kServoGain * u_V - kRate_per_s * (y_m - kRest_m); },
+       .samples = 2400});
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  EXPECT_THAT(d.missing, ElementsAre("spring_speed"));
+  EXPECT_NEAR(value(d, "spring_speed.rate_per_s"), kRate_per_s, 0.02 * kRate_per_s);
+  EXPECT_NEAR(value(d, "spring_speed.rest_m"), kRest_m, 1e-3);
+}
+
 TEST(ServoLaws, ALawThatComesNearIsInTheBetterModelAndNoVerdict) {
   // a weight on an arm, which the integrator of a speed loop takes back in time
   constexpr double kYields_mps = 0.02;

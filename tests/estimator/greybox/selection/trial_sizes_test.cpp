@@ -180,10 +180,10 @@ TEST(Waves, AddUpToAWaveOfAnySizeAndPhase) {
   }
 }
 
-TEST(Waves, AreSoughtFromOneAndAHalfToSixtyTurns) {
+TEST(Waves, AreSoughtFromOneAndAHalfTo120Turns) {
   const std::vector<double> turns = turns_over(motion());
   EXPECT_EQ(turns.front(), 1.5);
-  EXPECT_EQ(turns.back(), 60.0);
+  EXPECT_EQ(turns.back(), 120.0);
   // a stretch of any wave number is less than a quarter turn from one that is tried
   for (std::size_t i = 1; i < turns.size(); ++i) EXPECT_LE(turns[i] - turns[i - 1], 0.5);
 }

@@ -1,0 +1,127 @@
+#include "estimator/greybox/selection/simulated_laws.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/law_search.h"
+#include "estimator/greybox/selection/learned_laws.h"
+#include "estimator/greybox/selection/search_beginning.h"
+#include "estimator/greybox/selection/search_round.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Most laws beside which a second law or an effect is sought, and most that are held against those
+/// that explain the record.
+constexpr std::size_t kBeginnings = 3;
+constexpr std::size_t kRivalLaws = 4;
+
+std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects) {
+  std::vector<std::string> names;
+  for (const plant_sim::EffectInfo& effect : effects) names.push_back(effect.name);
+  return names;
+}
+
+/// True where a parameter of the plant, or an effect, ends at its bound: it makes up for what is
+/// missing.
+bool is_strained(const ModelStage& held, std::size_t plant_parameters) {
+  const FitSummary& fitted = held.fitted;
+  const auto plant_end = fitted.at_bound.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                       plant_parameters, fitted.at_bound.size()));
+  return !held.added.empty() &&
+         (std::any_of(fitted.at_bound.begin(), plant_end, [](int at) { return at != 0; }) ||
+          leaves_its_range(fitted, plant_parameters));
+}
+
+std::vector<Law> laws_of(const SearchContext& context, const ModelStage& held) {
+  std::vector<Law> laws =
+      law_dictionary(context.problem.model, context.problem.data, LawChoice::unexplained);
+  if (!rubs(context, held.added))
+    std::erase_if(laws, [](const Law& law) { return law.effect.site == "dry_friction"; });
+  return laws;
+}
+
+/// The branch that begins with a candidate of the round.
+SearchBranch begun_with(const Candidate& candidate, const Round& round) {
+  return {with(round.before, candidate), {round}, false};
+}
+
+/// A law, or a law beside an effect or another law, that explains the record.
+std::optional<SearchBranch> explaining(const SearchContext& context, const SearchStart& start,
+                                       const std::vector<Law>& laws) {
+  const std::vector<std::string> effects = names_of(context.problem.candidate_effects);
+  const SearchContext alone = with_laws(context, laws, {});
+  SearchBranch single{start.first, {}, false};
+  add_effects(alone, single, 1);
+  if (single.rounds.empty() || context.cancelled()) return {};
+  if (is_explained(alone, single.stage)) return single;
+  const auto completes = [&](const SearchContext& beside, SearchBranch& branch) {
+    add_effects(beside, branch, 2);
+    return branch.stage.added.size() == 2 && is_explained(beside, branch.stage);
+  };
+  if (!start.branch.rounds.empty()) {
+    const Round& named = start.branch.rounds.front();
+    SearchBranch beside_effect = begun_with(named.candidates.front(), named);
+    if (completes(alone, beside_effect)) return beside_effect;
+  }
+  const SearchContext any = with_laws(context, laws, effects);
+  const Round& round = single.rounds.front();
+  for (std::size_t i = 0; i < std::min(kBeginnings, round.candidates.size()); ++i) {
+    if (!round.candidates[i].fitted_at_all || context.cancelled()) break;
+    SearchBranch beside_law = begun_with(round.candidates[i], round);
+    if (completes(any, beside_law)) return beside_law;
+  }
+  return {};
+}
+
+/// The laws of the branch and those that came nearest to them.
+std::vector<Law> with_rivals(const std::vector<Law>& laws, const SearchBranch& branch) {
+  std::vector<std::string> names = branch.stage.added;
+  for (const Round& round : branch.rounds) {
+    for (std::size_t i = 0; i < std::min(kRivalLaws, round.candidates.size()); ++i)
+      names.push_back(round.candidates[i].effects.front());
+  }
+  std::vector<Law> result;
+  for (const Law& law : laws) {
+    if (std::find(names.begin(), names.end(), law.effect.name) != names.end())
+      result.push_back(law);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool explain_by_laws(const SearchContext& context, const SearchStart& start, Diagnosis& result) {
+  const ModelStage& first = start.first;
+  const ModelStage& held = start.branch.stage;
+  // parameters may differ between records before a law is missing
+  if (context.problem.effects_only || context.problem.data.fitted_records != 1) return false;
+  const bool strained =
+      is_explained(context, held) && is_strained(held, first.fitted.parameters.size());
+  if (!strained && !leaves_physics_to_simulations(context, held)) return false;
+  const std::vector<Law> laws = laws_of(context, held);
+  std::optional<SearchBranch> branch = explaining(context, start, laws);
+  if (!branch || context.cancelled()) return false;
+  LawSearch found{
+      with_laws(context, with_rivals(laws, *branch), branch->stage.added), first, {}, {}};
+  const SearchBranch taken{branch->stage, {}, false};
+  found.innovations =
+      search_innovations(found.context, first, taken, {branch->stage.added.size(), {}});
+  const InnovationStage& final = found.innovations.final;
+  found.laws = laws_among(laws, final.model.added);
+  if (found.laws.empty() || found.laws.size() > kMostLaws || !found.explains_record()) return false;
+  Diagnosis before = result;
+  before.rms_after_m = held.fitted.validation_rms_m;
+  before.whole = places_of(context, first);
+  const InnovationStage bare = with_candidates(found.innovations.before, context);
+  return is_clearly_likelier(context, final, bare, held) &&
+         take_laws(context, first, found, before, result);
+}
+
+}  // namespace estimator::greybox::selection
