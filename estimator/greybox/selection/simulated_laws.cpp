@@ -1,6 +1,7 @@
 #include "estimator/greybox/selection/simulated_laws.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,10 +9,10 @@
 
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/learned_laws.h"
-#include "estimator/greybox/selection/search_beginning.h"
 #include "estimator/greybox/selection/search_round.h"
 
 namespace estimator::greybox::selection {
@@ -21,6 +22,8 @@ namespace {
 /// that explain the record.
 constexpr std::size_t kBeginnings = 3;
 constexpr std::size_t kRivalLaws = 4;
+/// Gain of a curve from which on laws are worth their fits.
+constexpr double kMuchMotion_nats = 2.0 * kCurve_nats;
 
 std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects) {
   std::vector<std::string> names;
@@ -37,6 +40,16 @@ bool is_strained(const ModelStage& held, std::size_t plant_parameters) {
   return !held.added.empty() &&
          (std::any_of(fitted.at_bound.begin(), plant_end, [](int at) { return at != 0; }) ||
           leaves_its_range(fitted, plant_parameters));
+}
+
+/// True where a curve over the motion gains far more than a disturbance that bends a fit lets it:
+/// beside one no simulation comes near the noise, and the fits of all laws are in vain.
+bool leaves_much_motion(const SearchContext& with_holdouts, const ModelStage& held) {
+  if (is_explained(with_holdouts, held) || with_holdouts.cancelled()) return false;
+  const SearchContext context = without_holdouts(with_holdouts);
+  const InnovationStage stage =
+      settled(context, held, {}, Settling::once, wide(context.options.threads));
+  return std::isfinite(stage.minus_two_log) && largest_curve_nats(stage) > kMuchMotion_nats;
 }
 
 std::vector<Law> laws_of(const SearchContext& context, const ModelStage& held) {
@@ -104,7 +117,7 @@ bool explain_by_laws(const SearchContext& context, const SearchStart& start, Dia
   if (context.problem.effects_only || context.problem.data.fitted_records != 1) return false;
   const bool strained =
       is_explained(context, held) && is_strained(held, first.fitted.parameters.size());
-  if (!strained && !leaves_physics_to_simulations(context, held)) return false;
+  if (!strained && !leaves_much_motion(context, held)) return false;
   const std::vector<Law> laws = laws_of(context, held);
   std::optional<SearchBranch> branch = explaining(context, start, laws);
   if (!branch || context.cancelled()) return false;

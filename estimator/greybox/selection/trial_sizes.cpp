@@ -18,7 +18,7 @@ constexpr double kSignedRatio = 4.0;    ///< ratio between sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< ratio between sizes of a one-signed effect
 constexpr double kSmallSize =
     0.2;  ///< share of the typical size: the response of a wave is then linear
-constexpr double kFewestTurns = 1.5;   ///< a wave is one that is seen more than once
+constexpr double kFewestTurns = 1.5;    ///< a wave is one that is seen more than once
 constexpr double kFinestTurns = 120.0;  ///< turns of the finest wavelength over the motion
 /// Range of a wavelength about the value of the scan.
 constexpr double kNeighbourhood = 1.05;
