@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kBeginnings = 3;
 constexpr std::size_t kRivalLaws = 4;
 /// Gain of a curve from which on laws are worth their fits.
-constexpr double kMuchMotion_nats = 2.0 * kCurve_nats;
+constexpr double kMuchMotion_nats = 5.0 * kCurve_nats;
 
 std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects) {
   std::vector<std::string> names;
