@@ -27,6 +27,7 @@ constexpr double kMuchMotion_nats = 5.0 * kCurve_nats;
 
 std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects) {
   std::vector<std::string> names;
+  names.reserve(effects.size());
   for (const plant_sim::EffectInfo& effect : effects) names.push_back(effect.name);
   return names;
 }
