@@ -172,9 +172,11 @@ double time_error_s(const InnovationStage& stage, const std::string& change) {
       kProfiled * static_cast<double>(data.records.front().size()) * data.sample_time_s;
   const double present = fitted.theta[*row];
   std::vector<double> thetas{present};
-  for (double by_s = data.sample_time_s; by_s < farthest_s; by_s *= kProfileStep) {
+  double by_s = data.sample_time_s;
+  while (by_s < farthest_s) {
     thetas.push_back(present - by_s / unit_s);
     thetas.push_back(present + by_s / unit_s);
+    by_s *= kProfileStep;
   }
   double error_s = 0.0;
   const std::vector<ScannedValue> values = scanned(stage.context, fitted, *row, thetas);
