@@ -43,7 +43,7 @@ std::string second_mass_words(const selection::Diagnosis& diagnosis) {
   return text;
 }
 
-/// ": through 14 points, from -7200 to 4697"; empty for what is no curve.
+/// ": 14 values from -7200 to 4697"; empty for what is no curve.
 std::string curve_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
   const bool is_curve = std::any_of(
       diagnosis.laws.begin(), diagnosis.laws.end(),

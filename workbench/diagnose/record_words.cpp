@@ -165,7 +165,7 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
   const double given_step_s = outcome.prepared->problem.model.step_s;
   if (d.better.step_s < given_step_s) {
     out.push_back(fmt::format(
-        "simulated with steps of {:.2g} s: those of {:.2g} s that the model gives hide the motion",
+        "simulated with steps of {:.2g} s: those of {:.2g} s that the model gives are too coarse",
         d.better.step_s, given_step_s));
   }
   if (d.has_coarse_step()) {

@@ -73,7 +73,8 @@ bool scan_time(const SearchContext& context, const std::string& name, FitSummary
   const double unit_s = fitted.parameters[static_cast<std::size_t>(*row)].unit;
   const double step = kScanStep * context.problem.data.sample_time_s / unit_s;
   const double present = fitted.theta[*row];
-  const int half = static_cast<int>(kScanned_s / unit_s / step);
+  constexpr int kLeastSteps = static_cast<int>(ObserverSimulation::kLanes);
+  const int half = std::max(kLeastSteps, static_cast<int>(kScanned_s / unit_s / step));
   std::vector<double> thetas{present};
   for (int i = -half; i <= half; ++i) {
     if (i != 0) thetas.push_back(present + step * i);
@@ -165,7 +166,7 @@ InnovationStage polished(const ChangeProposal& taken, const InnovationStage& fou
 double time_error_s(const InnovationStage& stage, const std::string& change) {
   const FitSummary& fitted = stage.model.fitted;
   const std::optional<Eigen::Index> row = row_of(fitted, change + ".at_s");
-  if (!row || stage.context.cancelled()) return 0.0;
+  if (!row) return 0.0;
   const FitDataset& data = stage.context.problem.data;
   const double unit_s = fitted.parameters[static_cast<std::size_t>(*row)].unit;
   const double farthest_s =
@@ -180,6 +181,7 @@ double time_error_s(const InnovationStage& stage, const std::string& change) {
   }
   double error_s = 0.0;
   const std::vector<ScannedValue> values = scanned(stage.context, fitted, *row, thetas);
+  if (stage.context.cancelled()) return std::nan("");
   for (const ScannedValue& value : values) {
     const bool as_likely = value.cost < values.front().cost + kThreeErrors * kThreeErrors;
     if (as_likely) error_s = std::max(error_s, std::abs(value.theta - present) * unit_s);

@@ -23,7 +23,7 @@ namespace estimator::greybox::selection {
 
 /// Standard error of the time at which a change begins, s, by the likelihood's profile, the other
 /// parameters held: where nothing moves it is flat, and its curvature says nothing. 0 where the
-/// time is not free.
+/// time is not free, NaN where cancelled.
 [[nodiscard]] double time_error_s(const InnovationStage& stage, const std::string& change);
 
 }  // namespace estimator::greybox::selection

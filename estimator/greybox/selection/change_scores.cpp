@@ -289,7 +289,7 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     const ChangeScore warming =
         best_course(course, t_s, ChangeKind::exponential, kFromStart, kShares, score);
     scores.push_back(warming);
-    // those that begin later have a parameter more
+    // a course that begins later has a parameter more, and has to be worth it
     for (const ChangeScore& plain : {throughout, warming}) {
       const bool is_ramp = plain.kind == ChangeKind::ramp;
       const ChangeScore later = is_ramp

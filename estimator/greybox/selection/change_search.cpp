@@ -88,7 +88,7 @@ bool ends_beyond(const Dataset& record, const ChangeProposal& change,
   return kSettledAfter * time_constant_s > record.t_s.back() - begin_s;
 }
 
-/// True for an exponential that may be a step: all motion about it fits in little of the record.
+/// True for an exponential that may be a step: its time constant is below kSudden of the record.
 bool is_sudden(const Dataset& record, const ChangeProposal& change, const InnovationStage& fitted) {
   const double time_constant_s =
       fitted.model.fitted.value(name_of(change.score) + ".time_constant_s");

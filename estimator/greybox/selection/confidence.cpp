@@ -26,8 +26,9 @@ constexpr double kBeyondDoubt = 100.0;
 /// The same where what remains enters as the effect does: a square of the speed in place of the
 /// cube leaves 7 % of the error.
 constexpr double kBeyondDoubtThere = 400.0;
-/// Error over the noise from which on that is no measure: a droop of the supply in place of a flow
-/// that is limited one way explains 95 % of the error, and 500 times the noise remains.
+/// Error over the noise from which on the share explained is no measure: a droop of the supply in
+/// place of a flow that is limited one way explains 95 % of the error, and 500 times the noise
+/// remains.
 constexpr double kNoMeasure_ratio = 100.0;
 /// The same with the observer, below which a free run does not count: over a whole record it drifts
 /// by what is far below the error that remains.

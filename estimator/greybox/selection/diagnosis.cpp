@@ -15,6 +15,7 @@
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/other_file_values.h"
 #include "estimator/greybox/selection/other_readings.h"
 #include "estimator/greybox/selection/record_differences.h"
 #include "estimator/greybox/selection/screening_memo.h"
@@ -336,6 +337,7 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
 
 /// Share of the error that a finer step has to leave at most where it does not explain the record.
 constexpr double kFinerLeaves = 0.8;
+constexpr double kLeastStep_s = 1e-6;  ///< a model file's
 
 /// Diagnoses a record that is unexplained again with a finer step where the step's error is no
 /// small matter: stick-slip hides what is missing beside it.
@@ -345,8 +347,12 @@ void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& option
   if (result.verdict != Verdict::unexplained || !result.has_coarse_step() || cancelled) return;
   DiagnosisProblem finer = problem;
   finer.model.step_s *= kFinerStep;
+  if (finer.model.step_s < kLeastStep_s) return;
   Diagnosis again = diagnose_by_steps(finer, options);
-  if (options.cancel && options.cancel()) return;
+  if (options.cancel && options.cancel()) {
+    result.search.interrupted = true;
+    return;
+  }
   if (again.verdict != Verdict::unexplained ||
       again.rms_after_m < kFinerLeaves * result.rms_after_m) {
     result = std::move(again);

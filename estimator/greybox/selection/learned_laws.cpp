@@ -251,7 +251,9 @@ bool prefer_law(const SearchContext& context, const ModelStage& first,
 bool prefer_curve(const SearchContext& context, const ModelStage& first,
                   const InnovationSearch& innovations, Diagnosis& result) {
   const InnovationStage& named = innovations.final;
-  if (context.problem.effects_only || named.model.added.empty() || context.cancelled())
+  const std::vector<std::string>& added = named.model.added;
+  const bool resonates = std::find(added.begin(), added.end(), "second_mass") != added.end();
+  if (context.problem.effects_only || context.cancelled() || !(resonates || added.size() > 1))
     return false;
   const double gained_nats = 0.5 * (penalised(innovations.before) - penalised(named));
   if (!(largest_curve_nats(innovations.before) > kCurveForEffects * gained_nats)) return false;

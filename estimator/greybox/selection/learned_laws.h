@@ -56,8 +56,9 @@ void approximate_by_laws(const SearchContext& context, const ModelStage& first,
 [[nodiscard]] bool prefer_law(const SearchContext& context, const ModelStage& first,
                               const InnovationSearch& innovations, Diagnosis& result);
 
-/// Takes a curve where one promises more than all effects found gain, and is clearly likelier than
-/// they: a narrow resonance or a random force may stand in for a law. False: `result` is as before.
+/// Takes a curve in the place of a resonance or of several effects, which may stand in for a law,
+/// where it promises a quarter of what they gain and is clearly likelier. False: `result` is as
+/// before.
 [[nodiscard]] bool prefer_curve(const SearchContext& context, const ModelStage& first,
                                 const InnovationSearch& innovations, Diagnosis& result);
 

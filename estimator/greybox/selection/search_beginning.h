@@ -29,10 +29,4 @@ void continue_search(const SearchContext& context, SearchStart& start);
 [[nodiscard]] bool widen_file_values(const SearchContext& search, SearchStart& start,
                                      DiagnosisProblem& problem);
 
-/// Gives up the effects found where the model explains the record without them once the file's
-/// values may be farther off than their priors' ranges, at no more cost than the evidence that
-/// effects need; true where the problem has changed.
-[[nodiscard]] bool prefer_other_file_values(const SearchContext& search, SearchStart& start,
-                                            DiagnosisProblem& problem);
-
 }  // namespace estimator::greybox::selection

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/innovation_curves.h"
@@ -44,13 +45,15 @@ bool is_strained(const ModelStage& held, std::size_t plant_parameters) {
 }
 
 /// True where a curve over the motion gains far more than a disturbance that bends a fit lets it:
-/// beside one no simulation comes near the noise, and the fits of all laws are in vain.
+/// beside one no simulation comes near the noise, and the fits of all laws are in vain. What
+/// changes in time may look like a law too.
 bool leaves_much_motion(const SearchContext& with_holdouts, const ModelStage& held) {
   if (is_explained(with_holdouts, held) || with_holdouts.cancelled()) return false;
   const SearchContext context = without_holdouts(with_holdouts);
   const InnovationStage stage =
       settled(context, held, {}, Settling::once, wide(context.options.threads));
-  return std::isfinite(stage.minus_two_log) && largest_curve_nats(stage) > kMuchMotion_nats;
+  return std::isfinite(stage.minus_two_log) && largest_curve_nats(stage) > kMuchMotion_nats &&
+         motion_explains_more(stage);
 }
 
 std::vector<Law> laws_of(const SearchContext& context, const ModelStage& held) {
@@ -61,9 +64,12 @@ std::vector<Law> laws_of(const SearchContext& context, const ModelStage& held) {
   return laws;
 }
 
-/// The branch that begins with a candidate of the round.
-SearchBranch begun_with(const Candidate& candidate, const Round& round) {
-  return {with(round.before, candidate), {round}, false};
+/// The branch that begins with a candidate of the round, which may be without its Jacobian.
+SearchBranch begun_with(const SearchContext& context, const Candidate& candidate,
+                        const Round& round) {
+  ModelStage stage = with(round.before, candidate);
+  if (stage.fitted.jacobian.size() == 0) stage.fitted = refit_to_convergence(context, stage.fitted);
+  return {std::move(stage), {round}, false};
 }
 
 /// A law, or a law beside an effect or another law, that explains the record.
@@ -71,6 +77,7 @@ std::optional<SearchBranch> explaining(const SearchContext& context, const Searc
                                        const std::vector<Law>& laws) {
   const std::vector<std::string> effects = names_of(context.problem.candidate_effects);
   const SearchContext alone = with_laws(context, laws, {});
+  const SearchContext any = with_laws(context, laws, effects);
   SearchBranch single{start.first, {}, false};
   add_effects(alone, single, 1);
   if (single.rounds.empty() || context.cancelled()) return {};
@@ -81,14 +88,13 @@ std::optional<SearchBranch> explaining(const SearchContext& context, const Searc
   };
   if (!start.branch.rounds.empty()) {
     const Round& named = start.branch.rounds.front();
-    SearchBranch beside_effect = begun_with(named.candidates.front(), named);
-    if (completes(alone, beside_effect)) return beside_effect;
+    SearchBranch beside_effect = begun_with(any, named.candidates.front(), named);
+    if (completes(any, beside_effect)) return beside_effect;
   }
-  const SearchContext any = with_laws(context, laws, effects);
   const Round& round = single.rounds.front();
   for (std::size_t i = 0; i < std::min(kBeginnings, round.candidates.size()); ++i) {
     if (!round.candidates[i].fitted_at_all || context.cancelled()) break;
-    SearchBranch beside_law = begun_with(round.candidates[i], round);
+    SearchBranch beside_law = begun_with(any, round.candidates[i], round);
     if (completes(any, beside_law)) return beside_law;
   }
   return {};

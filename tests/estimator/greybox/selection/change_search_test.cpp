@@ -202,7 +202,7 @@ TEST(Changes, AParameterThatTheFileChangesGetsNoSecondChange) {
 // Any time in the pause explains the record as well.
 TEST(Changes, AStepInAPauseIsDatedToThePause) {
   const Command pausing = [hold = 0](double level, double y_m) mutable {
-    ++hold;  // of 0.15 s
+    ++hold;  // the command holds for 0.15 s: 12 to 15 s
     return hold > 80 && hold <= 100 ? 0.0 : diagnose_test::pulling_back(level, y_m);
   };
   const SearchContext context = servo_context(

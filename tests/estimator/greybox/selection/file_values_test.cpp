@@ -9,7 +9,7 @@
 
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/diagnosis.h"
-#include "estimator/greybox/selection/search_beginning.h"
+#include "estimator/greybox/selection/other_file_values.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -79,26 +79,41 @@ DiagnosisProblem single_rod(const std::string& spec) {
   return problem;
 }
 
-TEST(FileValues, AGainFarBelowTheFileMakesEffectsSuperfluous) {
-  constexpr double kOff = 0.85;  // 5.4 standard deviations
+/// What prefer_other_file_values makes of an effect that explains a servo's record, where the
+/// file's gain, known to 3 %, is `share` of it too large.
+struct GivenUp {
+  bool preferred = false;
+  SearchStart start;
+};
+GivenUp gain_off_by(double share) {
   SearchContext context =
       diagnose_test::servo_context({.rate_mps = diagnose_test::with_offset(0.0), .samples = 2400});
-  const double gain_mps_per_V = diagnose_test::kServoGain / kOff;
-  for (FreeParameter& p : context.problem.plant_parameters) {
-    if (p.name != "gain_mps_per_V") continue;
-    p.unit = gain_mps_per_V;
-    p.prior_sd = 0.03;
-    p.upper = 3.0 * p.prior_sd;
-    p.lower = -p.upper;
+  const double file_mps_per_V = diagnose_test::kServoGain / (1.0 - share);
+  *context.problem.model.value("gain_mps_per_V") = file_mps_per_V;
+  SearchContext free = context;
+  for (DiagnosisProblem* problem : {&context.problem, &free.problem}) {
+    FreeParameter& gain = parameter(*problem, "gain_mps_per_V");
+    gain.unit = file_mps_per_V;
+    gain.prior_sd = problem == &context.problem ? 0.03 : INFINITY;
+    gain.upper = problem == &context.problem ? 3.0 * gain.prior_sd : 1.0;
+    gain.lower = -gain.upper;
   }
-  *context.problem.model.value("gain_mps_per_V") = gain_mps_per_V;
-  SearchStart start = start_search(context);
-  EXPECT_FALSE(is_explained(context, start.first));
+  GivenUp result{false, start_search(context)};
+  EXPECT_FALSE(is_explained(context, result.start.first));
+  result.start.branch.stage = first_stage(free);
+  result.start.branch.stage.added = {"deadband"};  // in the place of any effect that explains it
   DiagnosisProblem problem = context.problem;
-  ASSERT_TRUE(prefer_other_file_values(context, start, problem));
-  EXPECT_THAT(start.branch.stage.added, testing::IsEmpty());
-  EXPECT_NEAR(start.first.fitted.value("gain_mps_per_V"), diagnose_test::kServoGain, 1e-4);
-  EXPECT_FALSE(prefer_other_file_values({problem, {}}, start, problem)) << "nothing to give up";
+  result.preferred = prefer_other_file_values(context, result.start, problem);
+  return result;
+}
+
+TEST(FileValues, AGainFarBelowTheFileMakesEffectsSuperfluous) {
+  const GivenUp far = gain_off_by(0.15);  // 5.4 standard deviations
+  ASSERT_TRUE(far.preferred);
+  EXPECT_THAT(far.start.branch.stage.added, testing::IsEmpty());
+  EXPECT_NEAR(far.start.first.fitted.value("gain_mps_per_V"), diagnose_test::kServoGain, 1e-4);
+  // 7.4 standard deviations cost more than the evidence that an effect needs
+  EXPECT_FALSE(gain_off_by(0.2).preferred);
 }
 
 TEST(FileValues, AForceIsNotTakenForASupplyFarBelowTheFile) {
