@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "estimator/greybox/selection/innovation_trials.h"
 
@@ -12,6 +13,34 @@ namespace {
 /// and the most of these.
 constexpr double kContends = 0.5;
 constexpr std::size_t kMostContenders = 2;
+/// Share of the chosen change's gain within which fits that have not converged decide nothing.
+constexpr double kNearly = 0.9;
+
+std::vector<std::size_t> by_likelihood(const std::vector<InnovationStage>& stages) {
+  std::vector<std::size_t> order(stages.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return penalised(stages[a]) < penalised(stages[b]);
+  });
+  return order;
+}
+
+/// The likeliest proposal of each parameter that is not known yet, the likeliest few of those that
+/// gain a share of what the chosen one does.
+std::vector<std::size_t> likeliest_others(const std::vector<ChangeProposal>& proposals,
+                                          const std::vector<InnovationStage>& stages,
+                                          std::vector<std::string> known, double before,
+                                          double least_gain) {
+  std::vector<std::size_t> result;
+  for (const std::size_t i : by_likelihood(stages)) {
+    const std::string& name = proposals[i].score.parameter.name;
+    if (result.size() == kMostContenders || before - penalised(stages[i]) < least_gain) break;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    known.push_back(name);
+    result.push_back(i);
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -36,19 +65,16 @@ std::vector<std::size_t> contenders(const std::vector<ChangeProposal>& proposals
   std::vector<std::string> known = rivals_of(proposals, stages, chosen);
   known.push_back(proposals[chosen].score.parameter.name);
   const double gain = before - penalised(stages[chosen]);
-  std::vector<std::size_t> order(stages.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return penalised(stages[a]) < penalised(stages[b]);
-  });
-  std::vector<std::size_t> result;
-  for (const std::size_t i : order) {
-    const std::string& name = proposals[i].score.parameter.name;
-    if (result.size() == kMostContenders || before - penalised(stages[i]) < kContends * gain) break;
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    known.push_back(name);
-    result.push_back(i);
-  }
+  return likeliest_others(proposals, stages, std::move(known), before, kContends * gain);
+}
+
+std::vector<std::size_t> nearly_as_likely(const std::vector<ChangeProposal>& proposals,
+                                          const std::vector<InnovationStage>& stages,
+                                          std::size_t chosen, double before) {
+  const double gain = before - penalised(stages[chosen]);
+  std::vector<std::size_t> result = likeliest_others(
+      proposals, stages, {proposals[chosen].score.parameter.name}, before, kNearly * gain);
+  result.insert(result.begin(), chosen);
   return result;
 }
 

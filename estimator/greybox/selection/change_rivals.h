@@ -20,4 +20,10 @@ namespace estimator::greybox::selection {
                                                   const std::vector<InnovationStage>& stages,
                                                   std::size_t chosen, double before);
 
+/// The chosen one, and of each other parameter the likeliest that gains nearly what it does: which
+/// of them is likelier shows where all have converged.
+[[nodiscard]] std::vector<std::size_t> nearly_as_likely(
+    const std::vector<ChangeProposal>& proposals, const std::vector<InnovationStage>& stages,
+    std::size_t chosen, double before);
+
 }  // namespace estimator::greybox::selection

@@ -8,6 +8,7 @@
 #include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/change_rivals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -45,8 +46,8 @@ std::size_t best_of(const std::vector<ChangeProposal>& proposals,
   return best;
 }
 
-/// Takes a fitted proposal into the stage.
-void take(const ChangeProposal& taken, const InnovationStage& fitted,
+/// Takes a proposal with its polished stage.
+void take(const ChangeProposal& taken, InnovationStage polished_stage,
           std::vector<std::string> rivals, InnovationStage& stage, ChangeSearch& search) {
   ParameterChange change;
   change.parameter = taken.score.parameter.name;
@@ -54,10 +55,10 @@ void take(const ChangeProposal& taken, const InnovationStage& fitted,
   InnovationCandidate candidate;
   candidate.effect = name_of(taken.score);
   candidate.settled = true;
-  candidate.penalty_nats = penalty_nats(fitted.model.fitted, stage.model.fitted);
-  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(fitted));
+  candidate.penalty_nats = penalty_nats(polished_stage.model.fitted, stage.model.fitted);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(polished_stage));
   const InnovationStage before = std::move(stage);
-  stage = polished(taken, fitted, wide(taken.context.options.threads));
+  stage = std::move(polished_stage);
   candidate.fitted = stage.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
   InnovationRound round{before.model, {std::move(candidate)}};
@@ -93,6 +94,15 @@ bool is_sudden(const Dataset& record, const ChangeProposal& change, const Innova
   const double time_constant_s =
       fitted.model.fitted.value(name_of(change.score) + ".time_constant_s");
   return time_constant_s < kSudden * (record.t_s.back() - record.t_s.front());
+}
+
+/// Polishes those stages.
+void polish(const std::vector<std::size_t>& which, const std::vector<ChangeProposal>& proposals,
+            unsigned threads, std::vector<InnovationStage>& stages) {
+  const SimulationWidth width = which.size() == 1 ? wide(threads) : SimulationWidth{};
+  in_parallel(which.size(), threads, [&](std::size_t k) {
+    stages[which[k]] = polished(proposals[which[k]], stages[which[k]], width);
+  });
 }
 
 /// Adds the likeliest change; false when none gains enough.
@@ -144,18 +154,21 @@ bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& s
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
   if (is_sudden(record, proposals[chosen], stages[chosen])) {
     // its time is near enough now for a step to be found
-    const SimulationWidth width = wide(plain.options.threads);
-    stages[chosen] = polished(proposals[chosen], stages[chosen], width);
+    polish({chosen}, proposals, plain.options.threads, stages);
     const std::size_t step =
         also(step_within(proposals[chosen].score, stages[chosen].model.fitted));
-    stages[step] = polished(proposals[step], stages[step], width);
+    polish({step}, proposals, plain.options.threads, stages);
     if (penalised(stages[step]) < penalised(stages[chosen]) + 2.0 * kRivals_nats) chosen = step;
   }
   // what explained much by a course of its own may be a rival by the chosen one
   for (const std::size_t i : contenders(proposals, stages, chosen, penalised(stage))) {
     also(with_course_of(proposals[chosen].score, stages[chosen].model.fitted, proposals[i].score));
   }
-  take(proposals[chosen], stages[chosen], rivals_of(proposals, stages, chosen), stage, search);
+  polish(nearly_as_likely(proposals, stages, chosen, penalised(stage)), proposals,
+         plain.options.threads, stages);
+  chosen = best_of(proposals, stages);
+  std::vector<std::string> rivals = rivals_of(proposals, stages, chosen);
+  take(proposals[chosen], std::move(stages[chosen]), std::move(rivals), stage, search);
   scores_taken.push_back(proposals[chosen].score);
   return true;
 }
@@ -203,7 +216,8 @@ std::optional<ChangeSearch> last_alone(ChangeSearch search, InnovationStage stag
   const ChangeProposal last = proposal(search.context, stage, taken.back());
   const InnovationStage alone = fitted(last, stage, wide(search.context.options.threads));
   if (!std::isfinite(alone.minus_two_log)) return {};
-  take(last, alone, both.changes.back().rivals, stage, search);
+  take(last, polished(last, alone, wide(search.context.options.threads)),
+       both.changes.back().rivals, stage, search);
   ChangeSearch found = concluded(std::move(search), std::move(stage), {taken.back()});
   const double enough_nats = kEvidence_nats + both.innovations.inexact_nats;
   if (!(penalised(found.innovations.final) <

@@ -8,6 +8,7 @@
 
 #include "config/record/command_advance.h"
 #include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
 #include "estimator/greybox/selection/structure_search.h"

@@ -298,7 +298,8 @@ bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
          result.final.value(kDelay) > kUndone * lead_s;
 }
 
-/// The diagnosis with the integration step of the problem's model.
+/// The diagnosis with the integration step of the problem's model, or with a finer one where that
+/// makes most of the model's error.
 Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   SearchContext context{problem, options, std::make_shared<SettledMemo>(),
                         std::make_shared<ScreeningMemo>()};
@@ -315,6 +316,9 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
   }
   SearchContext search = for_search(context);
   SearchStart start = start_search(search);
+  if (leaves_step_error(search, start.first.fitted) && !context.cancelled()) {
+    if (const auto finer = with_finer_step(problem)) return diagnose_by_steps(*finer, options);
+  }
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
   result.checks = checks_of(search, start, result.noise_floor_m);
@@ -337,24 +341,26 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
 
 /// Share of the error that a finer step has to leave at most where it does not explain the record.
 constexpr double kFinerLeaves = 0.8;
-constexpr double kLeastStep_s = 1e-6;  ///< a model file's
 
-/// Diagnoses a record that is unexplained again with a finer step where the step's error is no
-/// small matter: stick-slip hides what is missing beside it.
+/// True where nothing that is used beside the model is established.
+bool is_open(const Diagnosis& result) {
+  return result.verdict == Verdict::unexplained || result.verdict == Verdict::undetermined;
+}
+
+/// Diagnoses a record again with a finer step where it stays open and the step's error is no small
+/// matter: stick-slip hides what is missing beside it, and an effect may stand for that error.
 void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& options,
                  Diagnosis& result) {
   const bool cancelled = options.cancel && options.cancel();
-  if (result.verdict != Verdict::unexplained || !result.has_coarse_step() || cancelled) return;
-  DiagnosisProblem finer = problem;
-  finer.model.step_s *= kFinerStep;
-  if (finer.model.step_s < kLeastStep_s) return;
-  Diagnosis again = diagnose_by_steps(finer, options);
+  if (!is_open(result) || !result.has_coarse_step() || cancelled) return;
+  const auto finer = with_finer_step(problem);
+  if (!finer) return;
+  Diagnosis again = diagnose_by_steps(*finer, options);
   if (options.cancel && options.cancel()) {
     result.search.interrupted = true;
     return;
   }
-  if (again.verdict != Verdict::unexplained ||
-      again.rms_after_m < kFinerLeaves * result.rms_after_m) {
+  if (!is_open(again) || again.rms_after_m < kFinerLeaves * result.rms_after_m) {
     result = std::move(again);
   }
 }

@@ -1,6 +1,7 @@
 #include "estimator/greybox/selection/long_records.h"
 
 #include "estimator/greybox/representative_segments.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/parallel.h"
 

@@ -12,6 +12,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Share of the integration step that is held against it.
+constexpr double kFinerStep = 0.25;
+constexpr double kLeastStep_s = 1e-6;  ///< a model file's
+/// Errors over the noise between which the integration step may be what is missing, and its share
+/// of the error from which on it is.
+constexpr double kMoreThanNoise = 1.2;
+constexpr double kNearNoise = 10.0;
+constexpr double kByStep = 0.5;
+
 VectorXd residuals(const plant_sim::ModelFile& model, const FitDataset& data,
                    const FitSummary& fitted, double observer_per_s) {
   DatasetSimulation run(model, data, fitted.parameters, observer_per_s);
@@ -54,6 +63,20 @@ StepError step_error(const SearchContext& context, const FitSummary& fitted,
   }
   result.shift = linear_algebra::shortest_least_squares(left, right).x;
   return result;
+}
+
+bool leaves_step_error(const SearchContext& context, const FitSummary& fitted) {
+  const FitDataset& data = context.problem.data;
+  const double left_m = fitted.validation_rms_m;
+  return left_m > kMoreThanNoise * data.noise_floor_m && left_m < kNearNoise * data.noise_floor_m &&
+         step_error(context, fitted, data.validation_mask, 0.0).rms_m > kByStep * left_m;
+}
+
+std::optional<DiagnosisProblem> with_finer_step(const DiagnosisProblem& problem) {
+  DiagnosisProblem finer = problem;
+  finer.model.step_s *= kFinerStep;
+  if (finer.model.step_s < kLeastStep_s) return {};
+  return finer;
 }
 
 }  // namespace estimator::greybox::selection

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "estimator/greybox/selection/problem.h"
 
@@ -18,7 +19,12 @@ struct StepError {
 [[nodiscard]] StepError step_error(const SearchContext& context, const FitSummary& fitted,
                                    const Eigen::VectorXd& weights, double observer_per_s);
 
-/// Share of the integration step that is held against it.
-inline constexpr double kFinerStep = 0.25;
+/// True where most of what a fit near the noise leaves is the error of its integration step: an
+/// effect would stand for that.
+[[nodiscard]] bool leaves_step_error(const SearchContext& context, const FitSummary& fitted);
+
+/// The problem with the finer integration step that its own is held against; none below a model
+/// file's least.
+[[nodiscard]] std::optional<DiagnosisProblem> with_finer_step(const DiagnosisProblem& problem);
 
 }  // namespace estimator::greybox::selection

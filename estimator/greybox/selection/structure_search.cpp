@@ -11,6 +11,7 @@
 #include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/pair_search.h"
 #include "estimator/greybox/selection/parameter_subset.h"
@@ -239,25 +240,6 @@ double worthwhile_at(const SearchContext& context, double validation_rms_m) {
   if (!floor_shows_lead(context.problem.data)) return kWorthwhileInSlowLogs;
   return validation_rms_m < kUnexplained * context.problem.data.noise_floor_m ? kWorthwhileInNoise
                                                                               : kWorthwhile;
-}
-
-double nominal_rms_m(const SearchContext& context) {
-  DatasetSimulation run(context.problem.model, context.problem.data,
-                        context.problem.plant_parameters);
-  Eigen::MatrixXd residuals_m;
-  run.residuals(start_of(context.problem.model, context.problem.plant_parameters), residuals_m);
-  return rms(residuals_m.col(0), context.problem.data.validation_mask);
-}
-
-ModelStage first_stage(const SearchContext& context) {
-  FitOptions options;
-  options.tolerance = 1e-5;
-  options.cancel = context.options.cancel;
-  options.width = wide(context.options.threads);
-  return {{},
-          fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
-              context.problem.plant_parameters,
-              start_of(context.problem.model, context.problem.plant_parameters), options)};
 }
 
 SearchStart start_search(const SearchContext& context) {

@@ -113,9 +113,4 @@ void extend_search(const SearchContext& context, SearchStart& start);
 /// Notes a stage whose place another one has taken, where it left clearly less.
 void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken, StructureSearch& search);
 
-/// Held-out error of the model file unchanged.
-[[nodiscard]] double nominal_rms_m(const SearchContext& context);
-/// The model as given with its parameters fitted.
-[[nodiscard]] ModelStage first_stage(const SearchContext& context);
-
 }  // namespace estimator::greybox::selection

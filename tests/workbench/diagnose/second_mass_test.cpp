@@ -8,6 +8,7 @@
 
 #include "config/schema/document.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/screening.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/workbench/diagnose/judged.h"

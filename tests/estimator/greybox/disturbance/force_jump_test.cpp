@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"

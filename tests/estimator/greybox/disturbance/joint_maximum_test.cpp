@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/schema/document.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/workbench/diagnose/two_masses.h"

@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/selection/change_scores.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -282,6 +283,22 @@ TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
   EXPECT_NEAR(change.at_s, 14.0, 3.0 * change.at_error_s) << change.at_error_s;
   EXPECT_NEAR(change.at_s, 14.0, 0.05);
   EXPECT_NEAR(change.to / change.from, 1.9, 0.1);
+}
+
+// A supply and a gain move the rod alike until both fits have converged.
+TEST(Changes, ASupplyThatStepsIsNoGainThatDoes) {
+  const SearchContext context = context_of(
+      "motion=multisine,length_s=30,plant.mass_kg=52.5,plant.valve_gain_m_per_V=2.55e-5,"
+      "plant.damping_N_s_per_m=950,at12:plant.supply_pressure_Pa=6e6",
+      71);
+  const std::optional<ChangeSearch> found =
+      search_changes(context, first_stage(context)).explaining;
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  const ParameterChange& change = found->changes.front();
+  EXPECT_EQ(change.parameter, "supply_pressure_Pa");
+  EXPECT_THAT(change.rivals, IsEmpty());
+  EXPECT_NEAR(change.to / change.from, 6.0 / 6.89, 0.002);
 }
 
 // As the motion grows with the time, the drift looks like a law of the motion.

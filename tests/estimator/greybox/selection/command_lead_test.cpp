@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/prediction_error.h"
 #include "estimator/greybox/selection/structure_search.h"

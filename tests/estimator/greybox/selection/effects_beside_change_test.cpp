@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 

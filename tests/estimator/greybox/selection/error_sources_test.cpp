@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/split_scatter.h"
 #include "estimator/greybox/selection/step_error.h"
 #include "estimator/greybox/selection/structure_search.h"

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {

@@ -9,6 +9,7 @@
 
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/other_file_values.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"

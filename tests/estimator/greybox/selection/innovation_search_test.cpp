@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/settled_trials.h"
 #include "estimator/greybox/selection/structure_search.h"

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"

@@ -9,6 +9,7 @@
 
 #include "estimator/greybox/law_curve.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/settled_memo.h"
 #include "plant_sim/library.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"

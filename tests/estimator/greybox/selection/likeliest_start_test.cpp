@@ -6,6 +6,7 @@
 #include <set>
 
 #include "config/schema/document.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/problem.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "tests/workbench/diagnose/two_masses.h"

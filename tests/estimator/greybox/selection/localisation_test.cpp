@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/residual_variables.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/axis_in_motion.h"

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "config/schema/document.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {

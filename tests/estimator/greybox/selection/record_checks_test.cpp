@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/greybox/selection/two_areas.h"
 #include "plant_sim/plant.h"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"

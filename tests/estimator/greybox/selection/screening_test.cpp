@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 

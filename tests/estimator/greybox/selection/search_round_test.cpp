@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 
 namespace estimator::greybox::selection {

@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 

@@ -9,6 +9,7 @@
 
 #include "estimator/greybox/selection/backward_elimination.h"
 #include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/selection_path.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"

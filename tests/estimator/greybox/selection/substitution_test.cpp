@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
