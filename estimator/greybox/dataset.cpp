@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "config/record/record.h"
+#include "config/record/unit_text.h"
 #include "config/schema/error.h"
 #include "estimator/greybox/innovation_gains.h"
 
@@ -125,7 +126,9 @@ Dataset dataset_of(const config::record::Record& record) {
   result.command_is_interpolated = record.command_is_interpolated;
   for (const config::record::ChannelOrigin& origin : record.origins) {
     if (origin.name == "u_" + record.command_unit) {
-      result.command_column = {origin.header, origin.unit, origin.factor < 0.0};
+      const double by_unit = config::record::parse_unit(origin.unit).factor;
+      result.command_column = {origin.header, origin.unit, origin.factor < 0.0,
+                               std::abs(origin.factor) != by_unit};
     } else if (origin.name == "y_" + record.position_unit) {
       result.position_column = {origin.header, origin.unit, origin.factor < 0.0};
     }

@@ -42,6 +42,7 @@ struct SourceColumn {
   std::string header;   ///< in the file, or the column's number
   std::string unit;     ///< in the file
   bool turned = false;  ///< read with the sign turned
+  bool scaled = false;  ///< read with a factor that the unit does not have
 };
 
 struct Dataset {

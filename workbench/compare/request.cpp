@@ -49,7 +49,7 @@ PreparedComparison prepare(const CompareRequest& request) {
   if (!std::isinf(request.from_s) || !std::isinf(request.to_s)) {
     out.record = part_between(out.record, request.from_s, request.to_s);
   }
-  present::note_changes(out.model, out.record);
+  present::note_against_model(out.model, out.record);
   if (request.observer_per_s * out.record.sample_time_s >= 1.0) {
     throw UsageError("--observer: is too fast for samples every " +
                      std::to_string(out.record.sample_time_s) +

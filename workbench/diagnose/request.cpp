@@ -151,7 +151,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   std::vector<std::string> files = request.records;
   files.insert(files.end(), request.holdouts.begin(), request.holdouts.end());
   std::vector<greybox::Dataset> records = records_of(files, request);
-  for (greybox::Dataset& record : records) present::note_changes(model, record);
+  for (greybox::Dataset& record : records) present::note_against_model(model, record);
   const auto held_out = records.begin() + static_cast<std::ptrdiff_t>(request.records.size());
   std::vector<greybox::Dataset> holdouts(std::make_move_iterator(held_out),
                                          std::make_move_iterator(records.end()));

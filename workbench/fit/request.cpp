@@ -159,7 +159,7 @@ PreparedFit prepare(const FitRequest& request) {
   require_motion(problem.data);
   start_neutral_effects(problem.model, problem.data, choice);
   problem.start = choice.start;
-  for (Dataset& record : problem.data.records) present::note_changes(problem.model, record);
+  for (Dataset& record : problem.data.records) present::note_against_model(problem.model, record);
   out.notes = present::notes_of(problem.data.records);
   for (const Dataset& record : problem.data.records) {
     note_saturation(record, out.notes);

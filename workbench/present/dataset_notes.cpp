@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "config/record/unit_text.h"
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/reading_faults.h"
@@ -16,6 +17,9 @@ namespace workbench::present {
 namespace greybox = estimator::greybox;
 
 namespace {
+
+/// Rated command up to which it is one in V.
+constexpr double kFew_percent = 50.0;
 
 /// "mass_kg at 10 s"
 std::string change_words(const plant_sim::Change& change) {
@@ -115,7 +119,17 @@ void append(greybox::Dataset& whole, const greybox::Dataset& block) {
   whole.gaps.samples_left_out += block.gaps.samples_left_out;
 }
 
-}  // namespace
+/// Where 100 % opens the valve fully, a rated command of 10 V makes the model ten times too fast.
+void note_rated_command(plant_sim::ModelFile model, greybox::Dataset& record) {
+  const double* const rated_V = model.value("rated_command_V");
+  const greybox::SourceColumn& column = record.command_column;
+  const bool in_percent = config::record::parse_unit(column.unit).si == "pct" && !column.scaled;
+  if (rated_V == nullptr || !in_percent || *rated_V > kFew_percent) return;
+  record.notes.push_back(
+      fmt::format("the command is in %, and the model reaches its rated flow at {:.4g} %: "
+                  "where 100 % opens the valve fully, use --set parameters.rated_command_V=100",
+                  *rated_V));
+}
 
 void note_changes(const plant_sim::ModelFile& model, greybox::Dataset& record) {
   std::vector<std::string> fitting;
@@ -130,6 +144,13 @@ void note_changes(const plant_sim::ModelFile& model, greybox::Dataset& record) {
   if (fitting.empty()) return;
   record.notes.push_back("the model changes " + config::schema::listed(fitting) +
                          ": that is of the one record in which it happened");
+}
+
+}  // namespace
+
+void note_against_model(const plant_sim::ModelFile& model, greybox::Dataset& record) {
+  note_changes(model, record);
+  note_rated_command(model, record);
 }
 
 std::vector<std::string> notes_of(const greybox::Dataset& data) {

@@ -15,9 +15,9 @@ namespace workbench::present {
 [[nodiscard]] std::vector<std::string> notes_of(
     const std::vector<estimator::greybox::Dataset>& records);
 
-/// Adds to the record's notes that the model's changes belong to one record, and each change that
-/// this record does not have: before its begin, after its end, or of a stroke that its rod is
-/// beyond.
-void note_changes(const plant_sim::ModelFile& model, estimator::greybox::Dataset& record);
+/// Adds to the record's notes what its model says otherwise: that the model's changes belong to one
+/// record, each change that this record does not have (before its begin, after its end, or of a
+/// stroke that its rod is beyond), and a rated command in V beside a command in per cent.
+void note_against_model(const plant_sim::ModelFile& model, estimator::greybox::Dataset& record);
 
 }  // namespace workbench::present

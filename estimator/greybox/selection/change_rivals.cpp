@@ -27,12 +27,14 @@ std::vector<std::size_t> by_likelihood(const std::vector<InnovationStage>& stage
 
 /// The likeliest proposal of each parameter that is not known yet, the likeliest few of those that
 /// gain a share of what the chosen one does.
+template <class Allowed>
 std::vector<std::size_t> likeliest_others(const std::vector<ChangeProposal>& proposals,
                                           const std::vector<InnovationStage>& stages,
                                           std::vector<std::string> known, double before,
-                                          double least_gain) {
+                                          double least_gain, const Allowed& is_allowed) {
   std::vector<std::size_t> result;
   for (const std::size_t i : by_likelihood(stages)) {
+    if (!is_allowed(proposals[i])) continue;
     const std::string& name = proposals[i].score.parameter.name;
     if (result.size() == kMostContenders || before - penalised(stages[i]) < least_gain) break;
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
@@ -43,6 +45,25 @@ std::vector<std::size_t> likeliest_others(const std::vector<ChangeProposal>& pro
 }
 
 }  // namespace
+
+std::vector<std::string> polished_rivals_of(const std::vector<ChangeProposal>& proposals,
+                                            const std::vector<InnovationStage>& stages,
+                                            const std::vector<std::size_t>& polished,
+                                            std::size_t chosen,
+                                            const std::vector<std::string>& before) {
+  std::vector<std::string> names;
+  for (const std::size_t i : polished) names.push_back(proposals[i].score.parameter.name);
+  std::vector<std::string> rivals;
+  const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
+  for (const std::size_t i : polished) {
+    if (i != chosen && penalised(stages[i]) <= most)
+      rivals.push_back(proposals[i].score.parameter.name);
+  }
+  for (const std::string& name : before) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) rivals.push_back(name);
+  }
+  return rivals;
+}
 
 std::vector<std::string> rivals_of(const std::vector<ChangeProposal>& proposals,
                                    const std::vector<InnovationStage>& stages, std::size_t chosen) {
@@ -65,15 +86,20 @@ std::vector<std::size_t> contenders(const std::vector<ChangeProposal>& proposals
   std::vector<std::string> known = rivals_of(proposals, stages, chosen);
   known.push_back(proposals[chosen].score.parameter.name);
   const double gain = before - penalised(stages[chosen]);
-  return likeliest_others(proposals, stages, std::move(known), before, kContends * gain);
+  return likeliest_others(proposals, stages, std::move(known), before, kContends * gain,
+                          [](const ChangeProposal&) { return true; });
 }
 
 std::vector<std::size_t> nearly_as_likely(const std::vector<ChangeProposal>& proposals,
                                           const std::vector<InnovationStage>& stages,
                                           std::size_t chosen, double before) {
   const double gain = before - penalised(stages[chosen]);
-  std::vector<std::size_t> result = likeliest_others(
-      proposals, stages, {proposals[chosen].score.parameter.name}, before, kNearly * gain);
+  const ChangeScore& own = proposals[chosen].score;
+  // the kind has been weighed already, for the chosen one
+  std::vector<std::size_t> result =
+      likeliest_others(proposals, stages, {own.parameter.name}, before,
+                       std::min(kNearly * gain, gain - 2.0 * kEvidence_nats),
+                       [&](const ChangeProposal& other) { return other.score.kind == own.kind; });
   result.insert(result.begin(), chosen);
   return result;
 }

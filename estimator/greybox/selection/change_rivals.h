@@ -20,10 +20,17 @@ namespace estimator::greybox::selection {
                                                   const std::vector<InnovationStage>& stages,
                                                   std::size_t chosen, double before);
 
-/// The chosen one, and of each other parameter the likeliest that gains nearly what it does: which
-/// of them is likelier shows where all have converged.
+/// The chosen one, and the likeliest of the same kind of each other parameter that gains nearly
+/// what it does: which of them is likelier shows where all have converged.
 [[nodiscard]] std::vector<std::size_t> nearly_as_likely(
     const std::vector<ChangeProposal>& proposals, const std::vector<InnovationStage>& stages,
     std::size_t chosen, double before);
+
+/// The other parameters of `polished` whose change explains the record about as well, and those of
+/// `before`, found before the stages were polished, that are not among them.
+[[nodiscard]] std::vector<std::string> polished_rivals_of(
+    const std::vector<ChangeProposal>& proposals, const std::vector<InnovationStage>& stages,
+    const std::vector<std::size_t>& polished, std::size_t chosen,
+    const std::vector<std::string>& before);
 
 }  // namespace estimator::greybox::selection

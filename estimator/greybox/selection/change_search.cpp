@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "estimator/greybox/selection/change_fits.h"
@@ -35,15 +36,20 @@ constexpr double kSettledAfter = 3.0;
 /// The likeliest; the plant's own parameter where an absent effect's is hardly likelier: they are
 /// one where the equations are.
 std::size_t best_of(const std::vector<ChangeProposal>& proposals,
-                    const std::vector<InnovationStage>& stages) {
+                    const std::vector<InnovationStage>& stages,
+                    const std::vector<std::size_t>& among) {
   const auto cost = [&](std::size_t i) {
     return penalised(stages[i]) + (proposals[i].score.absent ? 2.0 * kEvidence_nats : 0.0);
   };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < stages.size(); ++i) {
-    if (cost(i) < cost(best)) best = i;
-  }
-  return best;
+  return *std::min_element(among.begin(), among.end(),
+                           [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
+}
+
+std::size_t best_of(const std::vector<ChangeProposal>& proposals,
+                    const std::vector<InnovationStage>& stages) {
+  std::vector<std::size_t> all(stages.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return best_of(proposals, stages, all);
 }
 
 /// Takes a proposal with its polished stage.
@@ -96,7 +102,7 @@ bool is_sudden(const Dataset& record, const ChangeProposal& change, const Innova
   return time_constant_s < kSudden * (record.t_s.back() - record.t_s.front());
 }
 
-/// Polishes those stages.
+/// Polishes the stages `which`.
 void polish(const std::vector<std::size_t>& which, const std::vector<ChangeProposal>& proposals,
             unsigned threads, std::vector<InnovationStage>& stages) {
   const SimulationWidth width = which.size() == 1 ? wide(threads) : SimulationWidth{};
@@ -164,10 +170,12 @@ bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& s
   for (const std::size_t i : contenders(proposals, stages, chosen, penalised(stage))) {
     also(with_course_of(proposals[chosen].score, stages[chosen].model.fitted, proposals[i].score));
   }
-  polish(nearly_as_likely(proposals, stages, chosen, penalised(stage)), proposals,
-         plain.options.threads, stages);
-  chosen = best_of(proposals, stages);
-  std::vector<std::string> rivals = rivals_of(proposals, stages, chosen);
+  const std::vector<std::string> before = rivals_of(proposals, stages, chosen);
+  const std::vector<std::size_t> near =
+      nearly_as_likely(proposals, stages, chosen, penalised(stage));
+  polish(near, proposals, plain.options.threads, stages);
+  chosen = best_of(proposals, stages, near);
+  std::vector<std::string> rivals = polished_rivals_of(proposals, stages, near, chosen, before);
   take(proposals[chosen], std::move(stages[chosen]), std::move(rivals), stage, search);
   scores_taken.push_back(proposals[chosen].score);
   return true;

@@ -298,8 +298,29 @@ bool delay_undoes_lead(const Diagnosis& result, const FitDataset& data) {
          result.final.value(kDelay) > kUndone * lead_s;
 }
 
-/// The diagnosis with the integration step of the problem's model, or with a finer one where that
-/// makes most of the model's error.
+/// Share of the error that a finer step has to leave at most where it does not explain the record.
+constexpr double kFinerLeaves = 0.8;
+
+/// The model as given, fitted. Where a finer integration step leaves clearly less, `context` and
+/// `search` get it.
+SearchStart fit_with_fine_step(SearchContext& context, SearchContext& search) {
+  SearchStart start = fit_as_given(search);
+  if (context.cancelled() || !may_be_step_error(search, start.first.fitted)) return start;
+  const auto problem = with_finer_step(context.problem);
+  if (!problem) return start;
+  SearchContext finer{*problem, context.options, std::make_shared<SettledMemo>(),
+                      std::make_shared<ScreeningMemo>()};
+  SearchContext search_finer = for_search(finer);
+  SearchStart again = fit_as_given(search_finer);
+  if (again.first.fitted.validation_rms_m < kFinerLeaves * start.first.fitted.validation_rms_m) {
+    context = std::move(finer);
+    search = std::move(search_finer);
+    start = std::move(again);
+  }
+  return start;
+}
+
+/// The diagnosis with the integration step of the problem's model, or a finer one.
 Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   SearchContext context{problem, options, std::make_shared<SettledMemo>(),
                         std::make_shared<ScreeningMemo>()};
@@ -315,10 +336,8 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
     return result;
   }
   SearchContext search = for_search(context);
-  SearchStart start = start_search(search);
-  if (leaves_step_error(search, start.first.fitted) && !context.cancelled()) {
-    if (const auto finer = with_finer_step(problem)) return diagnose_by_steps(*finer, options);
-  }
+  SearchStart start = fit_with_fine_step(context, search);
+  begin_rounds(search, start);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
   result.checks = checks_of(search, start, result.noise_floor_m);
@@ -339,10 +358,7 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
   return result;
 }
 
-/// Share of the error that a finer step has to leave at most where it does not explain the record.
-constexpr double kFinerLeaves = 0.8;
-
-/// True where nothing that is used beside the model is established.
+/// True for an unexplained or undetermined record.
 bool is_open(const Diagnosis& result) {
   return result.verdict == Verdict::unexplained || result.verdict == Verdict::undetermined;
 }
@@ -353,7 +369,9 @@ void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& option
                  Diagnosis& result) {
   const bool cancelled = options.cancel && options.cancel();
   if (!is_open(result) || !result.has_coarse_step() || cancelled) return;
-  const auto finer = with_finer_step(problem);
+  DiagnosisProblem used = problem;
+  used.model.step_s = result.better.step_s;
+  const auto finer = with_finer_step(used);
   if (!finer) return;
   Diagnosis again = diagnose_by_steps(*finer, options);
   if (options.cancel && options.cancel()) {

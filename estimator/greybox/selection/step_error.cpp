@@ -15,11 +15,11 @@ using Eigen::VectorXd;
 /// Share of the integration step that is held against it.
 constexpr double kFinerStep = 0.25;
 constexpr double kLeastStep_s = 1e-6;  ///< a model file's
-/// Errors over the noise between which the integration step may be what is missing, and its share
-/// of the error from which on it is.
+/// Errors over the noise between which a finer step is tried, and the share of the error that the
+/// change of step has at least: it also moves a fit from one minimum to another.
 constexpr double kMoreThanNoise = 1.2;
 constexpr double kNearNoise = 10.0;
-constexpr double kByStep = 0.5;
+constexpr double kByStep = 0.1;
 
 VectorXd residuals(const plant_sim::ModelFile& model, const FitDataset& data,
                    const FitSummary& fitted, double observer_per_s) {
@@ -65,11 +65,12 @@ StepError step_error(const SearchContext& context, const FitSummary& fitted,
   return result;
 }
 
-bool leaves_step_error(const SearchContext& context, const FitSummary& fitted) {
+bool may_be_step_error(const SearchContext& context, const FitSummary& fitted) {
   const FitDataset& data = context.problem.data;
   const double left_m = fitted.validation_rms_m;
   return left_m > kMoreThanNoise * data.noise_floor_m && left_m < kNearNoise * data.noise_floor_m &&
-         step_error(context, fitted, data.validation_mask, 0.0).rms_m > kByStep * left_m;
+         step_error(context, fitted, data.validation_mask, kObserver_per_s).rms_m >
+             kByStep * left_m;
 }
 
 std::optional<DiagnosisProblem> with_finer_step(const DiagnosisProblem& problem) {

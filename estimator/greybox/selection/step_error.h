@@ -19,9 +19,9 @@ struct StepError {
 [[nodiscard]] StepError step_error(const SearchContext& context, const FitSummary& fitted,
                                    const Eigen::VectorXd& weights, double observer_per_s);
 
-/// True where most of what a fit near the noise leaves is the error of its integration step: an
+/// True where the error of its integration step may be much of what a fit near the noise leaves: an
 /// effect would stand for that.
-[[nodiscard]] bool leaves_step_error(const SearchContext& context, const FitSummary& fitted);
+[[nodiscard]] bool may_be_step_error(const SearchContext& context, const FitSummary& fitted);
 
 /// The problem with the finer integration step that its own is held against; none below a model
 /// file's least.

@@ -242,20 +242,29 @@ double worthwhile_at(const SearchContext& context, double validation_rms_m) {
                                                                               : kWorthwhile;
 }
 
-SearchStart start_search(const SearchContext& context) {
+SearchStart fit_as_given(const SearchContext& context) {
   const auto begin = std::chrono::steady_clock::now();
   SearchStart start;
   start.nominal_rms_m = nominal_rms_m(context);
   start.first = first_stage(context);
   start.preview_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   start.branch.stage = start.first;
+  return start;
+}
+
+SearchStart start_search(const SearchContext& context) {
+  SearchStart start = fit_as_given(context);
+  begin_rounds(context, start);
+  return start;
+}
+
+void begin_rounds(const SearchContext& context, SearchStart& start) {
   if (extend_branch(context, start.branch, false, 1)) {
     // simulations know nothing of a disturbance: beside one, the likelihood has to find the second
     extend_branch(context, start.branch, false, kBeforePairSearch,
                   kNearFloor * context.problem.data.noise_floor_m);
   }
   if (!start.branch.rounds.empty()) start.preview_s += start.branch.rounds.front().screening_s;
-  return start;
 }
 
 void add_effects(const SearchContext& context, SearchBranch& branch, std::size_t most) {

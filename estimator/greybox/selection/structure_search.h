@@ -91,6 +91,11 @@ struct SearchStart {
   SearchBranch branch;
   double preview_s = 0.0;
 };
+/// The model as given, no effect tried yet.
+[[nodiscard]] SearchStart fit_as_given(const SearchContext& context);
+/// The first effect, and a second where it promises to come near the noise.
+void begin_rounds(const SearchContext& context, SearchStart& start);
+/// Fits the model as given and begins the rounds.
 [[nodiscard]] SearchStart start_search(const SearchContext& context);
 /// Rounds of single effects, until the branch has `most` of them, explains the record, or stalls.
 void add_effects(const SearchContext& context, SearchBranch& branch, std::size_t most);

@@ -31,13 +31,33 @@ std::vector<std::string> noted(const std::string& changes) {
           changes,
       "a.toml"));
   estimator::greybox::Dataset data = record();
-  note_changes(model, data);
+  note_against_model(model, data);
   return data.notes;
 }
 
 std::string change(const std::string& parameter, double value, double at_s) {
   return "[[change]]\nparameter = \"" + parameter + "\"\nvalue = " + std::to_string(value) +
          "\nat_s = " + std::to_string(at_s) + "\n";
+}
+
+std::string rated_command_note(const std::string& unit, double rated_V, bool scaled = false) {
+  auto model = plant_sim::read_model(config::schema::Document::parse(
+      "schema_version = 1\nname = \"a\"\nplant = \"hydraulic_cylinder\"\n", "a.toml"));
+  *model.value("rated_command_V") = rated_V;
+  estimator::greybox::Dataset data = record();
+  data.command_column.unit = unit;
+  data.command_column.scaled = scaled;
+  note_against_model(model, data);
+  return data.notes.empty() ? "" : data.notes.front();
+}
+
+TEST(DatasetNotes, AskForTheRatedCommandWhereTheCommandIsInPerCent) {
+  EXPECT_EQ(rated_command_note("V", 10.0), "");
+  EXPECT_EQ(rated_command_note("%", 10.0, true), "");
+  EXPECT_EQ(rated_command_note("pct", 95.0), "");
+  EXPECT_EQ(rated_command_note("Prozent", 10.0),
+            "the command is in %, and the model reaches its rated flow at 10 %: where 100 % opens "
+            "the valve fully, use --set parameters.rated_command_V=100");
 }
 
 TEST(DatasetNotes, SayThatChangesBelongToOneRecord) {
