@@ -51,8 +51,10 @@ std::vector<std::string> polished_rivals_of(const std::vector<ChangeProposal>& p
                                             const std::vector<std::size_t>& polished,
                                             std::size_t chosen,
                                             const std::vector<std::string>& before) {
-  std::vector<std::string> names;
-  for (const std::size_t i : polished) names.push_back(proposals[i].score.parameter.name);
+  const auto is_polished = [&](const std::string& name) {
+    return std::any_of(polished.begin(), polished.end(),
+                       [&](std::size_t i) { return proposals[i].score.parameter.name == name; });
+  };
   std::vector<std::string> rivals;
   const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
   for (const std::size_t i : polished) {
@@ -60,7 +62,7 @@ std::vector<std::string> polished_rivals_of(const std::vector<ChangeProposal>& p
       rivals.push_back(proposals[i].score.parameter.name);
   }
   for (const std::string& name : before) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) rivals.push_back(name);
+    if (!is_polished(name)) rivals.push_back(name);
   }
   return rivals;
 }
