@@ -119,7 +119,7 @@ void append(greybox::Dataset& whole, const greybox::Dataset& block) {
   whole.gaps.samples_left_out += block.gaps.samples_left_out;
 }
 
-/// Where 100 % opens the valve fully, a rated command of 10 V makes the model ten times too fast.
+/// A rated command of 10 V makes the model ten times too fast where 100 % opens the valve fully.
 void note_rated_command(plant_sim::ModelFile model, greybox::Dataset& record) {
   const double* const rated_V = model.value("rated_command_V");
   const greybox::SourceColumn& column = record.command_column;

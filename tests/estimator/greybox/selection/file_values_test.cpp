@@ -80,7 +80,7 @@ DiagnosisProblem single_rod(const std::string& spec) {
   return problem;
 }
 
-/// What prefer_other_file_values makes of an effect that explains a servo's record, where the
+/// The outcome of prefer_other_file_values for an effect that explains a servo's record, where the
 /// file's gain, known to 3 %, is `share` of it too large.
 struct GivenUp {
   bool preferred = false;

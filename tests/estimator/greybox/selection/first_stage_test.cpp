@@ -15,7 +15,7 @@ namespace {
 
 using diagnose_test::dataset_of;
 
-/// A linear axis with a stiff bristle, its step in `step_s`; the file's friction is 15 to 30 % off.
+/// A linear axis with a stiff bristle, its step in `step_s`; the file's friction is 13 to 33 % off.
 SearchContext sticking_axis(double step_s) {
   plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
                                                      "/config/models/force_driven_axis.toml");
@@ -28,13 +28,13 @@ SearchContext sticking_axis(double step_s) {
         std::pair{"friction.presliding_damping_N_s_per_m", 5000.0}}) {
     *model.value(name) = value;
   }
-  const truth::Case of = truth::parse_case(
+  const truth::Case rig = truth::parse_case(
       "rig=linear_axis,motion=slow_steps,length_s=20,plant.mass_kg=94,"
       "plant.damping_N_s_per_m=260,friction.coulomb_N=60,friction.static_N=80,"
       "friction.stribeck_mps=0.007,friction.presliding_stiffness_N_per_m=6e6,"
       "friction.bristle_N_s_per_m=6000",
       73);
-  return {make_problem(std::move(model), fit_dataset({dataset_of(truth::simulate(of))}, {})), {}};
+  return {make_problem(std::move(model), fit_dataset({dataset_of(truth::simulate(rig))}, {})), {}};
 }
 
 TEST(FirstStage, FindsTheFrictionOfAFileThatIsFarFromTheRigs) {
