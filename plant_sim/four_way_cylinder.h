@@ -192,6 +192,7 @@ class FourWayCylinder {
   S reach_m(const S& u_V) const;
   S fast_mps() const;
   S free_N() const;
+  S most_arrest_kg_per_s() const;
   S slow_mps(const S& free_N) const;
   S spool_reach_mps(const S& u_V) const;
   auto ordinary(const S& u_V) const;

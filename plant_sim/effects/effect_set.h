@@ -229,10 +229,8 @@ class EffectSet : public EffectStore<S, E...> {
   template <class Motion>
   [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact, Motion&& motion) const {
     contact.drive_N -= resisting_N(y_m, contact.v_mps, motion);
-    if (friction_varies()) {  // all forces of a friction go with its level
-      contact.drive_N = contact.drive_N / friction_ratio_;
-      contact.arrest_kg_per_s = contact.arrest_kg_per_s / friction_ratio_;
-    }
+    contact.drive_N = of_full_friction(contact.drive_N);
+    contact.arrest_kg_per_s = of_full_friction(contact.arrest_kg_per_s);
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
           contact.drive_N -= T::friction_N(p, memory, contact);
@@ -243,12 +241,14 @@ class EffectSet : public EffectStore<S, E...> {
   /// True when formulas change the level of dry friction from step to step.
   [[nodiscard]] bool friction_varies() const { return formulas_.acts_on(Site::dry_friction); }
 
-  /// Sums over all dry frictions, in this step.
-  [[nodiscard]] ContactLevels<S> contact_levels() const {
+  /// Sums over all dry frictions, in this step. `most_arrest_kg_per_s`: the mass over the shortest
+  /// part that a step is divided into.
+  [[nodiscard]] ContactLevels<S> contact_levels(const S& most_arrest_kg_per_s) const {
     ContactLevels<S> sum;
+    const S arrest_kg_per_s = of_full_friction(most_arrest_kg_per_s);
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
-          const ContactLevels<S> one = T::levels(p);
+          const ContactLevels<S> one = T::levels(p, arrest_kg_per_s);
           sum.holding_N += friction_ratio_ * one.holding_N;
           sum.braking_N += friction_ratio_ * one.braking_N;
           sum.gradual_N += friction_ratio_ * one.gradual_N;
@@ -256,16 +256,18 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
-  /// At speeds from `least_mps` to `v_mps`.
-  [[nodiscard]] S slope_N_s_per_m(const S& v_mps, const S& least_mps) const {
+  /// At speeds from `least_mps` to `v_mps`; `most_arrest_kg_per_s` as for contact_levels().
+  [[nodiscard]] S slope_N_s_per_m(const S& v_mps, const S& least_mps,
+                                  const S& most_arrest_kg_per_s) const {
     S sum = 0.0;
+    const S arrest_kg_per_s = of_full_friction(most_arrest_kg_per_s);
     this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) {
-          if constexpr (requires { T::slope_N_s_per_m(p, least_mps); })
-            sum += friction_ratio_ * T::slope_N_s_per_m(p, least_mps);
+          if constexpr (requires { T::slope_N_s_per_m(p, least_mps, arrest_kg_per_s); })
+            sum += friction_ratio_ * T::slope_N_s_per_m(p, least_mps, arrest_kg_per_s);
         });
     if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;
@@ -321,6 +323,11 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
   double half_step_s_ = 0.0;
+  /// What a friction of its parameters' level sees; all forces of a friction go with its level.
+  [[nodiscard]] S of_full_friction(const S& x) const {
+    return friction_varies() ? x / friction_ratio_ : x;
+  }
+
   S friction_ratio_ = 1.0;  ///< level of dry friction over that of its parameters, > 0
 };
 

@@ -106,24 +106,25 @@ struct Friction {
 
   static S stiffness_N_per_m(const Parameters& p) { return p.presliding_stiffness_N_per_m; }
 
-  static S slope_N_s_per_m(const Parameters& p, const S& least_mps) {
+  static S slope_N_s_per_m(const Parameters& p, const S& least_mps, const S& most_arrest_kg_per_s) {
     const auto bristled = p.presliding_stiffness_N_per_m > S(0.0);
     const S bristle = select(bristled, p.presliding_damping_N_s_per_m, S(0.0));
     if (all(p.transition_mps <= S(0.0))) return bristle;
-    const auto gradual = p.transition_mps > S(0.0);
+    const auto gradual = resolved(p, most_N(p), most_arrest_kg_per_s);
     const S transition_mps = select(gradual, p.transition_mps, S(1.0));
     const auto turns = abs(least_mps) < S(kTransitions) * transition_mps;
     return select(bristled, bristle,
                   select(gradual & turns, S(kFiner) * most_N(p) / transition_mps, S(0.0)));
   }
 
-  static ContactLevels<S> levels(const Parameters& p) {
+  static ContactLevels<S> levels(const Parameters& p, const S& most_arrest_kg_per_s) {
     const auto without_spring = p.presliding_stiffness_N_per_m <= S(0.0);
-    const auto rigid = without_spring & (p.transition_mps <= S(0.0));
-    const auto gradual = without_spring & (p.transition_mps > S(0.0));
+    const auto gradual = resolved(p, most_N(p), most_arrest_kg_per_s);
+    const auto contact_N = [&](const S& rigid_N, const S& gradual_N) {
+      return select(without_spring, select(gradual, gradual_N, rigid_N), S(0.0));
+    };
     const S least_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
-    return {select(rigid, least_N, S(0.0)), select(rigid, most_N(p), S(0.0)),
-            select(gradual, most_N(p), S(0.0))};
+    return {contact_N(least_N, S(0.0)), contact_N(most_N(p), S(0.0)), contact_N(S(0.0), most_N(p))};
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
@@ -150,10 +151,16 @@ struct Friction {
                            const S& backward_N, const S& rigid_N) {
     if (all(p.transition_mps <= S(0.0))) return rigid_N;
     const S level_N = select(at.v_mps < S(0.0), backward_N, forward_N);
-    const auto resolved = (p.transition_mps > S(0.0)) &
-                          (S(kResolvedRate) * p.transition_mps * at.arrest_kg_per_s >= level_N);
-    return select(resolved, level_N * tanh(at.v_mps / select(resolved, p.transition_mps, S(1.0))),
+    const auto gradual = resolved(p, level_N, at.arrest_kg_per_s);
+    return select(gradual, level_N * tanh(at.v_mps / select(gradual, p.transition_mps, S(1.0))),
                   rigid_N);
+  }
+
+  /// Mask of the lanes in which a friction of `level_N` turns its sign gradually, slowly enough for
+  /// parts of a step in which `arrest_kg_per_s` stops the mass.
+  static auto resolved(const Parameters& p, const S& level_N, const S& arrest_kg_per_s) {
+    return (p.transition_mps > S(0.0)) &
+           (S(kResolvedRate) * p.transition_mps * arrest_kg_per_s >= level_N);
   }
 
   static constexpr double kResolvedRate = 2.0;        ///< times a part of a step: RK4 follows that

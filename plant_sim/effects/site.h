@@ -16,7 +16,7 @@
 //   inertia       S added_mass_kg(p)                         mass that moves with the rod
 //   force         S resisting_N(p, y_m, v_mps)               a force against extension
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
-//                 ContactLevels<S> levels(p)                 by which steps are divided
+//                 ContactLevels<S> levels(p, most_arrest_kg_per_s)  by which steps are divided
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
 //                 S coupling_rate_per_s(p)                   its resonance, rad/s,
@@ -26,7 +26,7 @@
 //
 // Effects of one site act in the order of the table. An effect too fast for the integration step
 // declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv, at the
-// highest speed within the step, of a dry friction at the lowest,
+// highest speed within the step, of a dry friction at the lowest (p, v_mps, most_arrest_kg_per_s),
 // `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have

@@ -15,6 +15,7 @@ struct Hidden {
   double hysteresis_V = 0.0;  ///< half the width of the play
   double spool_rate_mps = kNone;
   double deadband_V = 0.0;  ///< half width
+  double corner_V = 0.0;    ///< half the range of commands over which its edges lie
   double asymmetry_ratio = 0.0;
   double flow_limit_m3ps = kNone;
   double droop_Pa_per_m3ps = 0.0;

@@ -50,6 +50,14 @@ double Machine::uneven(double spool, double per_volt) const {
   const double overlap = hidden.deadband_V * per_volt;
   double open = spool;
   if (overlap > 0.0) open = std::abs(spool) <= overlap ? 0.0 : spool - overlap * sign(spool);
+  if (const double corner = hidden.corner_V * per_volt; corner > 0.0) {
+    // the mean of edges at every place within the corner, by the antiderivative of one
+    const auto area = [&](double x) {
+      const double beyond = std::max(std::abs(x) - overlap, 0.0);
+      return 0.5 * beyond * beyond;
+    };
+    open = (area(spool + corner) - area(spool - corner)) / (2.0 * corner);
+  }
   return open * (1.0 + hidden.asymmetry_ratio * sign(open));
 }
 

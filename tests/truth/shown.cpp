@@ -15,6 +15,7 @@ const std::vector<Parameter>& parameters() {
       {"valve_hysteresis", "half_width_V", &H::hysteresis_V, 0.02},
       {"spool_rate_limit", "rate_mps", &H::spool_rate_mps, 0.02},
       {"deadband", "half_width_V", &H::deadband_V, 0.02},
+      {"deadband", "corner_V", &H::corner_V, 0.0},
       {"flow_asymmetry", "asymmetry_ratio", &H::asymmetry_ratio, 0.02},
       {"flow_saturation", "limit_m3ps", &H::flow_limit_m3ps, 0.02},
       {"supply_droop", "droop_Pa_per_m3ps", &H::droop_Pa_per_m3ps, 0.10},

@@ -104,7 +104,8 @@ void keep_file_where_better(const SearchContext& context, Diagnosis& result) {
   }
 }
 
-void take_parameters(const InnovationStage& stage, Diagnosis& result) {
+void take_parameters(InnovationStage stage, Diagnosis& result) {
+  drop_idle_refinements(stage.model.fitted);
   const FitDataset& data = stage.context.problem.data;
   result.final = stage.model.fitted;
   wrap_phases(result.final);

@@ -11,7 +11,7 @@ namespace estimator::greybox::selection {
 void fit_final_parameters(const SearchContext& context, Diagnosis& result);
 
 /// Takes the model that the innovations chose, as it is.
-void take_parameters(const InnovationStage& stage, Diagnosis& result);
+void take_parameters(InnovationStage stage, Diagnosis& result);
 
 /// Takes the model file as the better model of an interrupted search that leaves more on held-out
 /// data: the best so far may be that of a fit which had only begun.

@@ -71,6 +71,29 @@ TEST(Friction, BrakesAFreeMassAlongTheClosedFormOfItsTransition) {
   }
 }
 
+template <class Plant>
+std::vector<double> stick_slip_m(double transition_mps) {
+  auto plant = at_rest<Plant>();
+  set_effect(*plant, "friction", "coulomb_N", 30.0);
+  set_effect(*plant, "friction", "transition_mps", transition_mps);
+  plant->prepare(1e-3);
+  plant->reset();
+  std::vector<double> y_m;
+  for (int i = 0; i < 400; ++i) {
+    plant->step(std::sin(0.05 * i));
+    y_m.push_back(plant->state.y_m);
+  }
+  return y_m;
+}
+
+TEST(Friction, IsRigidWhereNoPartOfAStepResolvesItsTransition) {
+  // 30 N stop 50 kg (100 kg) within 9.4e-6 (4.7e-6) m/s in 1/64 ms
+  EXPECT_EQ(stick_slip_m<Actuator>(1e-6), stick_slip_m<Actuator>(0.0));
+  EXPECT_EQ(stick_slip_m<Axis>(1e-6), stick_slip_m<Axis>(0.0));
+  EXPECT_NE(stick_slip_m<Actuator>(1e-5), stick_slip_m<Actuator>(0.0));
+  EXPECT_NE(stick_slip_m<Axis>(1e-5), stick_slip_m<Axis>(0.0));
+}
+
 TEST(Friction, StopsACoastingMassInTheWayOfTheClosedFormInEitherDirection) {
   for (const double direction : {1.0, -1.0}) {
     auto axis = at_rest<Axis>();

@@ -88,6 +88,27 @@ TEST(Deadband, OpensNothingInsideAndShiftsTheCommandOutside) {
   EXPECT_NEAR(plant->state.v_mps, -steady_speed_mps(plant->parameters, 2.79e-5), 1e-9);
 }
 
+TEST(Deadband, OpensAlongAParabolaWithinARoundedCorner) {
+  effects::Deadband<double>::Parameters p;
+  const auto opening = [&](double command_V) {
+    return effects::Deadband<double>::opening_m(p, 0.5 * command_V, 0.5) / 0.5;
+  };
+  p.half_width_V = 0.2;
+  p.corner_V = 0.04;
+  // (d + c)^2 / (4 c): nothing, a sixteenth, a quarter, nine sixteenths and the whole of c
+  const std::vector<std::pair<double, double>> points{{0.0, 0.0},  {0.16, 0.0},    {0.18, 0.0025},
+                                                      {0.2, 0.01}, {0.22, 0.0225}, {0.24, 0.04},
+                                                      {1.0, 0.8}};
+  for (const auto& [command_V, opening_V] : points) {
+    EXPECT_NEAR(opening(command_V), opening_V, 1e-15) << command_V;
+    EXPECT_NEAR(opening(-command_V), -opening_V, 1e-15) << command_V;
+  }
+  // no wider than the band: x^2 / (4 w) up to 2 w
+  p.corner_V = 1.0;
+  EXPECT_NEAR(opening(0.1), 0.1 * 0.1 / 0.8, 1e-15);
+  EXPECT_NEAR(opening(0.4), 0.2, 1e-15);
+}
+
 TEST(FlowAsymmetry, OpensMoreWhenExtendingAndLessWhenRetracting) {
   for (const double u_V : {1.0, -1.0}) {
     auto plant = at_rest();

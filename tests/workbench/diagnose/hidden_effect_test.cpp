@@ -48,6 +48,16 @@ TEST(HiddenEffect, ADeadBandIsNamedWithItsWidth) {
   expect_found(judged("motion=multisine,length_s=12,deadband.half_width_V=0.2", 12));
 }
 
+TEST(HiddenEffect, ADeadBandIsNamedWithItsRoundedCorner) {
+  const Judged j =
+      judged("motion=multisine,length_s=12,deadband.half_width_V=0.2,deadband.corner_V=0.03", 12);
+  expect_found(j);
+  const auto corner = std::find_if(j.diagnosis.parameters.begin(), j.diagnosis.parameters.end(),
+                                   [](const auto& p) { return p.name == "deadband.corner_V"; });
+  ASSERT_NE(corner, j.diagnosis.parameters.end());
+  EXPECT_NEAR(corner->value, 0.03, 1e-3);
+}
+
 // The law of four edges stands among those left out: it is in no plan.
 TEST(HiddenEffect, AnUnderlapIsNamedWithItsHalfWidth) {
   const Judged j =
