@@ -95,7 +95,8 @@ class ForceDrivenAxis {
     disturbed_ = disturbed_parts(effects, mass_kg, disturbance_place);
     driven_kg_ = driven_kg;
     inverse_mass_ = S(1.0) / driven_kg;
-    contact_ = effects.contact_levels(most_arrest_kg_per_s());
+    most_arrest_kg_per_s_ = most_arrest_kg_per_s(driven_kg, step_s);
+    contact_ = effects.contact_levels(most_arrest_kg_per_s_);
     rubs_ = !all(contact_.braking_N + contact_.gradual_N <= S(0.0));
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
     spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
@@ -107,7 +108,7 @@ class ForceDrivenAxis {
     const S known_V = limits::known_V(u_V);
     if (effects.friction_varies()) {
       effects.weigh_friction([&] { return motion(state, known_V); });
-      contact_ = effects.contact_levels(most_arrest_kg_per_s());
+      contact_ = effects.contact_levels(most_arrest_kg_per_s_);
     }
     const S drive_V =
         effects.drive_V(effects.command_V(known_V, [&] { return motion(state, known_V); }));
@@ -128,11 +129,6 @@ class ForceDrivenAxis {
     return {.u_V = u_V, .y_m = x.y_m, .v_mps = x.v_mps};
   }
 
-  /// DryContact::arrest_kg_per_s of a step that is divided as often as can be.
-  [[nodiscard]] S most_arrest_kg_per_s() const {
-    return driven_kg_ * S(limits::kMostDivisions / step_s_);
-  }
-
   /// Number of parts of a step, fine enough for damping, friction and springs.
   S divisions(const S& drive_V) const {
     const S& v_mps = state.v_mps;
@@ -144,7 +140,7 @@ class ForceDrivenAxis {
     const S step_per_kg = S(step_s_) * inverse_mass_;
     const S least_mps = least_speed_mps(v_mps, free_N, contact_, step_per_kg);
     const S slope = parameters.damping_N_s_per_m +
-                    effects.slope_N_s_per_m(v_mps, least_mps, most_arrest_kg_per_s());
+                    effects.slope_N_s_per_m(v_mps, least_mps, most_arrest_kg_per_s_);
     S fastest = max(slope * inverse_mass_, spring_rate_);
     if (effects.stiffness_varies()) {
       const S stiffness = effects.stiffness_N_per_m(v_mps);
@@ -183,7 +179,7 @@ class ForceDrivenAxis {
   double step_s_ = 0.0;
   bool rubs_ = false;
   effects::ContactLevels<S> contact_;
-  S driven_kg_, inverse_mass_, spring_rate_;
+  S driven_kg_, inverse_mass_, spring_rate_, most_arrest_kg_per_s_;
   DisturbedParts<S> disturbed_;
   S arrest_kg_per_s_;  ///< DryContact::arrest_kg_per_s of the present step
 };

@@ -145,6 +145,7 @@ class FourWayCylinder {
     CylinderSide<S> in, out;
     EndCushions<S> cushions;
     bool cushioned;
+    S most_arrest_kg_per_s;
     effects::ContactLevels<S> contact;
     bool brakes, turns_gradually;
     DisturbedParts<S> disturbed;
@@ -192,7 +193,7 @@ class FourWayCylinder {
   S reach_m(const S& u_V) const;
   S fast_mps() const;
   S free_N() const;
-  S most_arrest_kg_per_s() const;
+  void take_contact();
   S slow_mps(const S& free_N) const;
   S spool_reach_mps(const S& u_V) const;
   auto ordinary(const S& u_V) const;

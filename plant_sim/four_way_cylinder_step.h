@@ -92,9 +92,8 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
   derived_.disturbed = disturbed_parts(effects, mass_kg, disturbance_place);
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
-  derived_.contact = effects.contact_levels(most_arrest_kg_per_s());
-  derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));
-  derived_.turns_gradually = !all(derived_.contact.gradual_N <= S(0.0));
+  derived_.most_arrest_kg_per_s = most_arrest_kg_per_s(derived_.mass_kg, step_s);
+  take_contact();
   arrest_kg_per_s_ = derived_.mass_kg * S(1.0 / step_s);
   if constexpr (!Design::kEqualSides) derived_.weight_N = Design::weight_N(p, mass_kg);
   derived_.steady_rate = max(max(spool.wv_rad_per_s, derived_.two_zeta_wv), derived_.lag_rate);
@@ -142,10 +141,11 @@ S FourWayCylinder<S, Design>::free_N() const {
          effects.resisting_N(state.y_m, v_mps, [&] { return motion(state); });
 }
 
-/// DryContact::arrest_kg_per_s of a step that is divided as often as can be.
 template <class S, class Design>
-S FourWayCylinder<S, Design>::most_arrest_kg_per_s() const {
-  return derived_.mass_kg * S(limits::kMostDivisions / derived_.step_s);
+void FourWayCylinder<S, Design>::take_contact() {
+  derived_.contact = effects.contact_levels(derived_.most_arrest_kg_per_s);
+  derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));
+  derived_.turns_gradually = !all(derived_.contact.gradual_N <= S(0.0));
 }
 
 /// The slowest that the rod can become within the step.
@@ -183,8 +183,8 @@ auto FourWayCylinder<S, Design>::ordinary(const S& u_V) const {
   const S stiffness = (oil + derived_.stiffness_N_per_m * in_m3 * out_m3) * step_s * step_s;
   const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
   const S least_mps = derived_.turns_gradually ? slow_mps(free_N()) : S(0.0);
-  const S slope =
-      p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps, least_mps, most_arrest_kg_per_s());
+  const S slope = p.damping_N_s_per_m +
+                  effects.slope_N_s_per_m(speed_mps, least_mps, derived_.most_arrest_kg_per_s);
   constexpr double kSquare = limits::kRateStep * limits::kRateStep;
   const auto place = (room_m > travel_m) & (derived_.steady_rate * step_s <= S(limits::kRateStep));
   const auto pressure =
@@ -224,7 +224,7 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
   const S drive_V = drive_V_;
   if (effects.friction_varies()) {
     effects.weigh_friction([&] { return motion(state); });
-    derived_.contact = effects.contact_levels(most_arrest_kg_per_s());
+    take_contact();
   }
   const auto whole = ordinary(drive_V);
   S turned = 1.0;
@@ -306,9 +306,10 @@ S FourWayCylinder<S, Design>::divisions(const S& u_V) const {
   const S leak_rate = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa / min(in_m3, out_m3);
   const S speed_mps = fast_mps();
   const S least_mps = derived_.turns_gradually ? slow_mps(free_N()) : S(0.0);
-  const S damping_rate = (p.damping_N_s_per_m +
-                          effects.slope_N_s_per_m(speed_mps, least_mps, most_arrest_kg_per_s())) *
-                         derived_.inverse_mass;
+  const S damping_rate =
+      (p.damping_N_s_per_m +
+       effects.slope_N_s_per_m(speed_mps, least_mps, derived_.most_arrest_kg_per_s)) *
+      derived_.inverse_mass;
   const S fastest =
       max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
   // the equations have a corner where the spool reaches its limit

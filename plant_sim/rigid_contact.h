@@ -3,6 +3,7 @@
 #pragma once
 
 #include "plant_sim/effects/site.h"
+#include "plant_sim/guard.h"
 #include "plant_sim/scalar.h"
 
 namespace plant_sim {
@@ -12,6 +13,12 @@ inline constexpr double kTurnDivisions = 16.0;
 
 /// Change of forces within a step, over what they are or add up to.
 inline constexpr double kTurnMargin = 2.0;
+
+/// DryContact::arrest_kg_per_s of a mass whose steps are divided as often as can be.
+template <class S>
+S most_arrest_kg_per_s(const S& mass_kg, double step_s) {
+  return mass_kg * S(limits::kMostDivisions / step_s);
+}
 
 /// Speed along the motion, m/s, at the end of a step that friction brakes with `braking_N`, its
 /// change doubled: below 0 it may turn. `free_N`: the sum of all other forces; `step_per_kg`: step

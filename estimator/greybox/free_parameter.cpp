@@ -19,6 +19,8 @@ double FreeParameter::to_physical(double theta) const {
       return unit * std::exp(theta);
     case ParameterScale::reciprocal:
       return theta > 0.0 ? unit / theta : kInfinite;
+    case ParameterScale::square:
+      return unit * std::sqrt(std::max(theta, 0.0));
     case ParameterScale::linear:
       break;
   }
@@ -31,6 +33,8 @@ double FreeParameter::to_theta(double value) const {
       return std::log(value / unit);
     case ParameterScale::reciprocal:
       return unit / value;
+    case ParameterScale::square:
+      return value * value / (unit * unit);
     case ParameterScale::linear:
       break;
   }
@@ -43,6 +47,8 @@ double FreeParameter::slope(double theta) const {
       return unit * std::exp(theta);
     case ParameterScale::reciprocal:
       return unit / (theta * theta);
+    case ParameterScale::square:
+      return unit / (2.0 * std::sqrt(theta));
     case ParameterScale::linear:
       break;
   }
@@ -80,8 +86,9 @@ std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect
       p.lower = 0.0;
       p.upper = info.min > 0.0 ? std::min(info.typical / info.min, kLargest) : kLargest;
     } else {
-      p.lower = std::max(info.min / info.typical, -kLargest);
-      p.upper = std::min(info.max / info.typical, kLargest);
+      if (info.order == 2) p.scale = ParameterScale::square;
+      p.lower = std::max(p.to_theta(info.min), -kLargest);
+      p.upper = std::min(p.to_theta(info.max), kLargest);
     }
     found.push_back(p);
   }

@@ -4,6 +4,7 @@
 //   linear       value = origin + unit theta effects: theta = 0 is their absence
 //   logarithmic  value = unit exp(theta)     plants: theta = 0 is the model file's value
 //   reciprocal   value = unit / theta        limits: theta = 0 is no limit
+//   square       value = unit sqrt(theta)    influence that begins with the square of the value
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,7 @@
 
 namespace estimator::greybox {
 
-enum class ParameterScale { linear, logarithmic, reciprocal };
+enum class ParameterScale { linear, logarithmic, reciprocal, square };
 
 inline constexpr int kEveryRefinement = 1000;
 inline constexpr char kInRecord = '@';

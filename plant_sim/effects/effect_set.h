@@ -241,8 +241,8 @@ class EffectSet : public EffectStore<S, E...> {
   /// True when formulas change the level of dry friction from step to step.
   [[nodiscard]] bool friction_varies() const { return formulas_.acts_on(Site::dry_friction); }
 
-  /// Sums over all dry frictions, in this step. `most_arrest_kg_per_s`: the mass over the shortest
-  /// part that a step is divided into.
+  /// Sums over all dry frictions, in this step. `most_arrest_kg_per_s`: DryContact::arrest_kg_per_s
+  /// of a step that is divided as often as can be.
   [[nodiscard]] ContactLevels<S> contact_levels(const S& most_arrest_kg_per_s) const {
     ContactLevels<S> sum;
     const S arrest_kg_per_s = of_full_friction(most_arrest_kg_per_s);
@@ -322,12 +322,13 @@ class EffectSet : public EffectStore<S, E...> {
     return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x, motion()) : x;
   }
 
-  double half_step_s_ = 0.0;
-  /// What a friction of its parameters' level sees; all forces of a friction go with its level.
+  /// Scales a force on a contact to friction of its parameters' level: all forces of a friction go
+  /// with its level.
   [[nodiscard]] S of_full_friction(const S& x) const {
     return friction_varies() ? x / friction_ratio_ : x;
   }
 
+  double half_step_s_ = 0.0;
   S friction_ratio_ = 1.0;  ///< level of dry friction over that of its parameters, > 0
 };
 

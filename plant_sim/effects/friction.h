@@ -110,7 +110,7 @@ struct Friction {
     const auto bristled = p.presliding_stiffness_N_per_m > S(0.0);
     const S bristle = select(bristled, p.presliding_damping_N_s_per_m, S(0.0));
     if (all(p.transition_mps <= S(0.0))) return bristle;
-    const auto gradual = resolved(p, most_N(p), most_arrest_kg_per_s);
+    const auto gradual = resolved(p, most_arrest_kg_per_s);
     const S transition_mps = select(gradual, p.transition_mps, S(1.0));
     const auto turns = abs(least_mps) < S(kTransitions) * transition_mps;
     return select(bristled, bristle,
@@ -119,7 +119,7 @@ struct Friction {
 
   static ContactLevels<S> levels(const Parameters& p, const S& most_arrest_kg_per_s) {
     const auto without_spring = p.presliding_stiffness_N_per_m <= S(0.0);
-    const auto gradual = resolved(p, most_N(p), most_arrest_kg_per_s);
+    const auto gradual = resolved(p, most_arrest_kg_per_s);
     const auto contact_N = [&](const S& rigid_N, const S& gradual_N) {
       return select(without_spring, select(gradual, gradual_N, rigid_N), S(0.0));
     };
@@ -151,16 +151,16 @@ struct Friction {
                            const S& backward_N, const S& rigid_N) {
     if (all(p.transition_mps <= S(0.0))) return rigid_N;
     const S level_N = select(at.v_mps < S(0.0), backward_N, forward_N);
-    const auto gradual = resolved(p, level_N, at.arrest_kg_per_s);
+    const auto gradual = resolved(p, at.arrest_kg_per_s);
     return select(gradual, level_N * tanh(at.v_mps / select(gradual, p.transition_mps, S(1.0))),
                   rigid_N);
   }
 
-  /// Mask of the lanes in which a friction of `level_N` turns its sign gradually, slowly enough for
-  /// parts of a step in which `arrest_kg_per_s` stops the mass.
-  static auto resolved(const Parameters& p, const S& level_N, const S& arrest_kg_per_s) {
+  /// Mask of the lanes in which friction turns its sign gradually, slowly enough for parts of a
+  /// step with that `arrest_kg_per_s` (DryContact).
+  static auto resolved(const Parameters& p, const S& arrest_kg_per_s) {
     return (p.transition_mps > S(0.0)) &
-           (S(kResolvedRate) * p.transition_mps * arrest_kg_per_s >= level_N);
+           (S(kResolvedRate) * p.transition_mps * arrest_kg_per_s >= most_N(p));
   }
 
   static constexpr double kResolvedRate = 2.0;        ///< times a part of a step: RK4 follows that

@@ -26,7 +26,8 @@
 //
 // Effects of one site act in the order of the table. An effect too fast for the integration step
 // declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv, at the
-// highest speed within the step, of a dry friction at the lowest (p, v_mps, most_arrest_kg_per_s),
+// highest speed within the step, of a dry friction at the lowest, with that of the shortest part of
+// a step, `S slope_N_s_per_m(p, least_mps, most_arrest_kg_per_s)`,
 // `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have

@@ -58,7 +58,9 @@ std::size_t ExpressionGraph::record(Op op, std::size_t a, std::size_t b, std::si
   if (count < 2) b = 0;
   if (count < 3) c = 0;
   if (fixed(a) && (count < 2 || fixed(b)) && (count < 3 || fixed(c))) {
-    const double value = apply(op, nodes_[a].value, nodes_[b].value, nodes_[c].value);
+    const double value = op == Op::power
+                             ? std::pow(nodes_[a].value, nodes_[b].value)  // exact where it can be
+                             : apply(op, nodes_[a].value, nodes_[b].value, nodes_[c].value);
     return add({Kind::constant, value, Op::add, 0, 0, 0});
   }
   if (op == Op::power && fixed(b)) return power(a, b);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "plant_sim/scalar.h"
@@ -73,6 +74,19 @@ S by_lane(F f, const S& a, const S& b) {
   }
 }
 
+/// a^b; for finite a > 0 and b to within 1.5 + 2 |b ln a| units in the last place.
+template <class S>
+S power(const S& a, const S& b) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const auto plain = (a > S(0.0)) & ((a <= S(kLargest)) & (abs(b) <= S(kLargest)));
+  const auto vanishes = (a <= S(0.0)) & ((a >= S(0.0)) & (b > S(0.0)));
+  const S from_exp = exp(select(plain, b, S(0.0)) * log(select(plain, a, S(1.0))));
+  const auto known = select(plain, S(1.0), select(vanishes, S(1.0), S(0.0))) > S(0.0);
+  const S result = select(plain, from_exp, S(0.0));
+  if (all(known)) return result;
+  return select(known, result, by_lane([](double x, double y) { return std::pow(x, y); }, a, b));
+}
+
 /// One operation; surplus operands are ignored.
 template <class S>
 S apply(Op op, const S& a, const S& b, const S& c) {
@@ -89,7 +103,7 @@ S apply(Op op, const S& a, const S& b, const S& c) {
     case Op::divide:
       return a / b;
     case Op::power:
-      return by_lane([](double x, double y) { return std::pow(x, y); }, a, b);
+      return power(a, b);
     case Op::negate:
       return -a;
     case Op::less:

@@ -87,7 +87,7 @@ bool earned(const SearchContext& context, CrossValidation& halves, const ModelSt
 }
 
 void drop_refinements(const SearchContext& context, CrossValidation& halves, ModelStage& stage) {
-  drop_idle_refinements(stage.fitted);
+  drop_idle_refinements(stage.added, stage.fitted);
   std::vector<Refinement> remaining = refinements_of(stage);
   while (!remaining.empty() && !context.cancelled()) {
     std::vector<ParameterSubset> plain;

@@ -371,7 +371,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
       add_line_rivals(without_holdouts(search), innovations.final, *result.disturbance);
     if (!context.cancelled()) result.prediction = prediction_errors(search, innovations);
     take_parameters(innovations.final, result);
-    if (result.has_coarse_step()) drop_step_error(result.disturbance, result.step_error_m);
+    if (result.has_coarse_step_beside(result.noise_floor_m))
+      drop_step_error(result.disturbance, result.step_error_m);
     keep_file_where_better(search, result);
   }
   for (const InnovationRivals& rivals :

@@ -106,10 +106,12 @@ struct Diagnosis {
   double step_error_m = 0.0;    ///< RMS by which a shorter step changes its simulation
   double runtime_s = 0.0;
 
-  /// True where the error of the integration step is not small beside the sensor's noise.
-  [[nodiscard]] bool has_coarse_step() const {
+  /// True where the error of the integration step is not small beside what no model can explain.
+  [[nodiscard]] bool has_coarse_step() const { return has_coarse_step_beside(floor_m()); }
+  /// The same beside any error.
+  [[nodiscard]] bool has_coarse_step_beside(double error_m) const {
     constexpr double kCoarse_ratio = 0.5;
-    return !loses_motion && step_error_m > kCoarse_ratio * noise_floor_m;
+    return !loses_motion && step_error_m > kCoarse_ratio * error_m;
   }
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;

@@ -87,7 +87,7 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
     result.final = observed();
     with_observer = true;
   }
-  drop_idle_refinements(result.final);
+  drop_idle_refinements(stage.added, result.final);
   wrap_phases(result.final);
   result.better = with_values(context.problem.model, result.final);
   keep_file_where_better(context, result);
@@ -105,7 +105,7 @@ void keep_file_where_better(const SearchContext& context, Diagnosis& result) {
 }
 
 void take_parameters(InnovationStage stage, Diagnosis& result) {
-  drop_idle_refinements(stage.model.fitted);
+  drop_idle_refinements(stage.model.added, stage.model.fitted);
   const FitDataset& data = stage.context.problem.data;
   result.final = stage.model.fitted;
   wrap_phases(result.final);

@@ -130,7 +130,7 @@ bool is_idle(const FitSummary& fitted, const std::string& effect) {
   return false;
 }
 
-void drop_idle_refinements(FitSummary& fitted) {
+void drop_idle_refinements(const std::vector<std::string>& added, FitSummary& fitted) {
   using Eigen::Index;
   const auto count = static_cast<Index>(fitted.parameters.size());
   if (fitted.jacobian.cols() != count) return;
@@ -142,7 +142,8 @@ void drop_idle_refinements(FitSummary& fitted) {
   std::vector<Index> kept;
   for (Index i = 0; i < count; ++i) {
     const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
-    bool idle = p.refinement > 0;
+    bool idle =
+        p.refinement > 0 && std::find(added.begin(), added.end(), effect_of(p)) != added.end();
     for (Index k = 0; idle && k < count; ++k) {
       const FreeParameter& other = fitted.parameters[static_cast<std::size_t>(k)];
       const bool together = other.refinement == p.refinement && effect_of(other) == effect_of(p);

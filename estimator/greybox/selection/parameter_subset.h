@@ -65,9 +65,9 @@ void append(ParameterSubset& to, const ParameterSubset& more);
                                               const FitSummary& fitted);
 /// True when the effect's size, its first parameter, is zero.
 [[nodiscard]] bool is_idle(const FitSummary& fitted, const std::string& effect);
-/// Removes refinements of effects that change nothing: at their neutral value, or without
+/// Removes refinements of added effects that change nothing: at their neutral value, or without
 /// influence.
-void drop_idle_refinements(FitSummary& fitted);
+void drop_idle_refinements(const std::vector<std::string>& added, FitSummary& fitted);
 /// Takes a fit from a start of revived_refinements() where it is better.
 void revive(const SearchContext& context, FitSummary& fitted);
 

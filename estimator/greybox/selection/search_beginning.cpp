@@ -15,12 +15,6 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// True where a spectral line explains more of what a search leaves than any curve does.
-bool leaves_a_line(const SearchContext& context, const InnovationSearch& search) {
-  const std::vector<ScoredLine> lines = line_candidates(context, search.final);
-  return !lines.empty() && lines.front().gain_nats > search.curve_nats;
-}
-
 SearchStart begin_search(const SearchContext& context) {
   SearchStart start = start_search(context);
   continue_search(context, start);
@@ -36,7 +30,7 @@ bool leaves_physics_to_simulations(const SearchContext& context, const ModelStag
   left.final = settled(fitted, stage, {}, Settling::once, wide(context.options.threads));
   if (!std::isfinite(left.final.minus_two_log)) return true;
   weigh_remainder(fitted, left);
-  return left.physics_missing() && !leaves_a_line(fitted, left);
+  return left.physics_missing() && !(line_nats(fitted, left.final) > left.curve_nats);
 }
 
 void continue_search(const SearchContext& context, SearchStart& start) {

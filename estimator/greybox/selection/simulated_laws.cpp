@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/greybox/selection/backward_elimination.h"
 #include "estimator/greybox/selection/change_search.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
@@ -15,6 +16,7 @@
 #include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/search_round.h"
+#include "estimator/greybox/selection/spectral_line_candidates.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -44,16 +46,18 @@ bool is_strained(const ModelStage& held, std::size_t plant_parameters) {
           leaves_its_range(fitted, plant_parameters));
 }
 
-/// True where a curve over the motion gains far more than a disturbance that bends a fit lets it:
-/// beside one no simulation comes near the noise, and the fits of all laws are in vain. What
-/// changes in time may look like a law too.
+/// True where a curve over the motion gains far more than a disturbance that bends a fit lets it,
+/// and more than a spectral line: beside either no simulation comes near the noise, and the fits of
+/// all laws are in vain. What changes in time may look like a law too.
 bool leaves_much_motion(const SearchContext& with_holdouts, const ModelStage& held) {
   if (is_explained(with_holdouts, held) || with_holdouts.cancelled()) return false;
   const SearchContext context = without_holdouts(with_holdouts);
   const InnovationStage stage =
       settled(context, held, {}, Settling::once, wide(context.options.threads));
-  return std::isfinite(stage.minus_two_log) && largest_curve_nats(stage) > kMuchMotion_nats &&
-         motion_explains_more(stage);
+  if (!std::isfinite(stage.minus_two_log)) return false;
+  const double curve_nats = largest_curve_nats(stage);
+  return curve_nats > kMuchMotion_nats && motion_explains_more(stage) &&
+         curve_nats > line_nats(context, stage);
 }
 
 std::vector<Law> laws_of(const SearchContext& context, const ModelStage& held) {
@@ -82,9 +86,12 @@ std::optional<SearchBranch> explaining(const SearchContext& context, const Searc
   add_effects(alone, single, 1);
   if (single.rounds.empty() || context.cancelled()) return {};
   if (is_explained(alone, single.stage)) return single;
+  if (!leaves_much_motion(alone, single.stage)) return {};
   const auto completes = [&](const SearchContext& beside, SearchBranch& branch) {
     add_effects(beside, branch, 2);
-    return branch.stage.added.size() == 2 && is_explained(beside, branch.stage);
+    if (branch.stage.added.size() != 2) return false;
+    if (!is_explained(beside, branch.stage)) refit_without_refinements(beside, branch.stage);
+    return is_explained(beside, branch.stage);
   };
   if (!start.branch.rounds.empty()) {
     const Round& named = start.branch.rounds.front();

@@ -97,4 +97,9 @@ std::vector<ScoredLine> line_candidates(const SearchContext& plain, const Innova
   return scored;
 }
 
+double line_nats(const SearchContext& plain, const InnovationStage& stage) {
+  const std::vector<ScoredLine> lines = line_candidates(plain, stage);
+  return lines.empty() ? 0.0 : lines.front().gain_nats;
+}
+
 }  // namespace estimator::greybox::selection

@@ -18,4 +18,7 @@ struct ScoredLine {
 [[nodiscard]] std::vector<ScoredLine> line_candidates(const SearchContext& plain,
                                                       const InnovationStage& stage);
 
+/// Gain of the best spectral line; 0 where there is none.
+[[nodiscard]] double line_nats(const SearchContext& plain, const InnovationStage& stage);
+
 }  // namespace estimator::greybox::selection

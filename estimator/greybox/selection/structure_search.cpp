@@ -324,6 +324,22 @@ void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,
   search.refused.push_back({stage.added, stage.fitted.validation_rms_m, why});
 }
 
+namespace {
+
+/// Ends a path at its first stage that noise explains and that no later one improves on by what an
+/// effect must gain: an effect may have been taken before the others were, or the model's own
+/// parameters, had converged.
+void end_where_explained(const SearchContext& context, std::vector<ModelStage>& path) {
+  const double last_m = path.back().fitted.validation_rms_m;
+  const double enough_m = (1.0 + worthwhile_at(context, last_m)) * last_m;
+  const auto end = std::find_if(path.begin(), path.end() - 1, [&](const ModelStage& stage) {
+    return is_explained(context, stage) && stage.fitted.validation_rms_m < enough_m;
+  });
+  path.erase(end + 1, path.end());
+}
+
+}  // namespace
+
 StructureSearch conclude_search(const SearchContext& context, SearchStart start) {
   CrossValidation halves(context);
   StructureSearch search;
@@ -347,6 +363,8 @@ StructureSearch conclude_search(const SearchContext& context, SearchStart start)
       search.path = dropped ? path_to(context, first, last) : std::move(validated);
       if (!dropped) search.path.back() = std::move(last);
     }
+  } else {
+    end_where_explained(context, search.path);
   }
   search.final = search.path.back();
   search.interrupted = context.cancelled();

@@ -13,7 +13,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(FreeParameter, GoesThereAndBackOnEveryScale) {
   for (const ParameterScale scale :
-       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal}) {
+       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal,
+        ParameterScale::square}) {
     const FreeParameter p{"x", scale, 40.0};
     for (const double s : {0.2, 1.0, 1.7}) EXPECT_NEAR(p.to_theta(p.to_physical(s)), s, 1e-12);
   }
@@ -23,11 +24,13 @@ TEST(FreeParameter, StandsForTheNeutralValueAtZero) {
   EXPECT_EQ((FreeParameter{"x", ParameterScale::linear, 40.0}).to_physical(0.0), 0.0);
   EXPECT_EQ((FreeParameter{"x", ParameterScale::logarithmic, 40.0}).to_physical(0.0), 40.0);
   EXPECT_EQ((FreeParameter{"x", ParameterScale::reciprocal, 40.0}).to_physical(0.0), kInfinite);
+  EXPECT_EQ((FreeParameter{"x", ParameterScale::square, 40.0}).to_physical(0.0), 0.0);
 }
 
 TEST(FreeParameter, HasTheSlopeOfItsValue) {
   for (const ParameterScale scale :
-       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal}) {
+       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal,
+        ParameterScale::square}) {
     const FreeParameter p{"x", scale, 40.0};
     const double h = 1e-6;
     const double difference = std::abs(p.to_physical(0.7 + h) - p.to_physical(0.7 - h)) / (2.0 * h);

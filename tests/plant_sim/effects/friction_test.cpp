@@ -87,7 +87,7 @@ std::vector<double> stick_slip_m(double transition_mps) {
 }
 
 TEST(Friction, IsRigidWhereNoPartOfAStepResolvesItsTransition) {
-  // 30 N stop 50 kg (100 kg) within 9.4e-6 (4.7e-6) m/s in 1/64 ms
+  // in 1/64 ms 30 N change the speed of 50 kg (100 kg) by 9.4e-6 (4.7e-6) m/s; half is resolved
   EXPECT_EQ(stick_slip_m<Actuator>(1e-6), stick_slip_m<Actuator>(0.0));
   EXPECT_EQ(stick_slip_m<Axis>(1e-6), stick_slip_m<Axis>(0.0));
   EXPECT_NE(stick_slip_m<Actuator>(1e-5), stick_slip_m<Actuator>(0.0));

@@ -103,10 +103,12 @@ TEST(Deadband, OpensAlongAParabolaWithinARoundedCorner) {
     EXPECT_NEAR(opening(command_V), opening_V, 1e-15) << command_V;
     EXPECT_NEAR(opening(-command_V), -opening_V, 1e-15) << command_V;
   }
-  // no wider than the band: x^2 / (4 w) up to 2 w
-  p.corner_V = 1.0;
-  EXPECT_NEAR(opening(0.1), 0.1 * 0.1 / 0.8, 1e-15);
-  EXPECT_NEAR(opening(0.4), 0.2, 1e-15);
+  // wider than the band: the share (c - w) / c of the edges is open at null
+  p.corner_V = 0.3;
+  EXPECT_NEAR(opening(0.05), 0.05 / 3.0, 1e-15);
+  EXPECT_NEAR(opening(-0.05), -0.05 / 3.0, 1e-15);
+  EXPECT_NEAR(opening(0.2), 0.3 * 0.3 / 1.2, 1e-15);
+  EXPECT_NEAR(opening(0.5), 0.3, 1e-15);
 }
 
 TEST(FlowAsymmetry, OpensMoreWhenExtendingAndLessWhenRetracting) {

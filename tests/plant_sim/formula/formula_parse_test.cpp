@@ -54,6 +54,30 @@ TEST(Formula, FollowsThePrecedenceOfArithmetic) {
   EXPECT_EQ(value("+3 + k*k*2", x, y, k), 3.0 + k * k * 2.0);
 }
 
+TEST(Formula, HasThePowersOfTheMathLibrary) {
+  EXPECT_EQ(value("2^3", 0.0, 0.0, 0.0), 8.0);
+  EXPECT_EQ(value("floor(4^2)", 0.0, 0.0, 0.0), 16.0);
+  EXPECT_EQ(value("y^2^3", 0.0, -0.5, 0.0), 1.0 / 256.0);
+  const auto power = [](double a, double b) { return value("x^y", a, b, 0.0); };
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double a : {1e-300, 1e-3, 0.5, 1.0, 1.0001, 7.0, 1e300}) {
+    for (const double b : {-2.0, -0.3, 0.0, 1.0, 1.5, 2.0}) {
+      const double exact = std::pow(a, b);
+      if (!std::isnormal(exact)) continue;
+      const double units = 1.5 + 2.0 * std::abs(b * std::log(a));
+      EXPECT_NEAR(power(a, b), exact, 2.3e-16 * units * exact) << a << " ^ " << b;
+    }
+  }
+  for (const double a : {-kInfinite, -2.0, 0.0, kInfinite}) {
+    for (const double b : {-kInfinite, -2.0, 0.0, 2.0, 3.0, kInfinite}) {
+      EXPECT_EQ(power(a, b), std::pow(a, b)) << a << " ^ " << b;
+    }
+  }
+  EXPECT_TRUE(std::isnan(power(-2.0, 0.5)));
+  EXPECT_TRUE(std::isnan(power(std::nan(""), 2.0)));
+  EXPECT_EQ(power(1.0, std::nan("")), 1.0);
+}
+
 TEST(Formula, HasTheFunctionsOfTheMathLibrary) {
   const double x = 0.37, y = -1.3, k = 0.8;
   const auto near = [](double a, double b) {

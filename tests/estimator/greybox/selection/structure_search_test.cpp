@@ -149,6 +149,22 @@ TEST(Way, BeginsWithWhatBringsMost) {
   EXPECT_EQ(way[2].fitted.validation_rms_m, final.fitted.validation_rms_m);
 }
 
+TEST(ConcludedSearch, EndsWithTheFewestEffectsThatLeaveNoise) {
+  const auto concluded = [](double offset_V, double band_V) {
+    const SearchContext context =
+        servo_context({.rate_mps = with_offset_and_band(offset_V, band_V)});
+    SearchStart start;
+    start.first = first_stage(context);
+    start.branch.stage =
+        stage_with(context, start.first, {{"deadband", 0.05}, {"null_bias", 0.05}});
+    EXPECT_TRUE(is_explained(context, start.branch.stage));
+    return conclude_search(context, start).final.added;
+  };
+  EXPECT_THAT(concluded(0.0, 0.0), IsEmpty());
+  EXPECT_THAT(concluded(0.06, 0.0), ElementsAre("null_bias"));
+  EXPECT_THAT(concluded(0.06, 0.1), UnorderedElementsAre("null_bias", "deadband"));
+}
+
 /// The flow is more when extending in the first half of 20 s and less in the second.
 double turning(double u_V, double /*y_m*/, double t_s) {
   const double share = (t_s < 10.0 ? 0.02 : -0.02) * (u_V > 0.0 ? 1.0 : -1.0);

@@ -215,7 +215,7 @@ TEST(ScaleSize, TurnsAWaveInsteadOfMakingItNegative) {
 }
 
 TEST(ScaleSize, SaysWhereANegativeSizeIsNotPossible) {
-  const std::vector<greybox::FreeParameter> width = own("deadband");
+  const std::vector<greybox::FreeParameter> width = own("backlash");
   Eigen::VectorXd own_size = Eigen::VectorXd::Constant(1, 2.0);
   EXPECT_FALSE(scale_size(width, -0.5, own_size));
   EXPECT_DOUBLE_EQ(own_size[0], 1.0);
