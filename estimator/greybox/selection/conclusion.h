@@ -23,22 +23,6 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
 [[nodiscard]] double least_rms_m(const SearchContext& context, const FitSummary& fitted,
                                  double observer_per_s);
 
-/// Noise of the sensor: the data set's floor, or the noise model's where that is no more than a
-/// bound.
-[[nodiscard]] double sensor_noise_m(const SearchContext& search,
-                                    const InnovationSearch& innovations, bool floor_assumed);
-
-/// True where the rig amplifies a disturbance that is next to nothing until a simulation loses the
-/// motion: its error is then no measure of a model.
-[[nodiscard]] bool loses_motion(const SearchContext& search, const InnovationSearch& innovations,
-                                const std::optional<Disturbance>& disturbance);
-
-/// True where what sensor and disturbance would cause in a simulation, by the noise model, agrees
-/// with its error `rms_m`: what explains the samples has to explain the simulation too.
-[[nodiscard]] bool noise_is_credible(const SearchContext& search,
-                                     const InnovationSearch& innovations, double sensor_m,
-                                     const std::optional<Disturbance>& disturbance, double rms_m);
-
 /// A verdict by the likelihood of innovations. `first`: the model as given, its parameters fitted.
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
               const InnovationSearch& innovations, Diagnosis& result);

@@ -15,6 +15,7 @@
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/noise_credibility.h"
 #include "estimator/greybox/selection/other_file_values.h"
 #include "estimator/greybox/selection/other_readings.h"
 #include "estimator/greybox/selection/record_differences.h"

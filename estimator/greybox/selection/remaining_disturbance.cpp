@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/innovation_search.h"
 #include "estimator/greybox/selection/long_records.h"
+#include "estimator/greybox/selection/noise_credibility.h"
 
 namespace estimator::greybox::selection {
 

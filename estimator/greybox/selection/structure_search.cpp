@@ -326,16 +326,24 @@ void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,
 
 namespace {
 
-/// Ends a path at its first stage that noise explains and that no later one improves on by what an
-/// effect must gain: an effect may have been taken before the others were, or the model's own
-/// parameters, had converged.
+/// Ends a path at its first stage that noise explains and that the last one does not improve on: an
+/// effect may have been taken before the others, or the model's own parameters, had converged.
 void end_where_explained(const SearchContext& context, std::vector<ModelStage>& path) {
-  const double last_m = path.back().fitted.validation_rms_m;
-  const double enough_m = (1.0 + worthwhile_at(context, last_m)) * last_m;
+  const ModelStage& last = path.back();
+  const auto improved = [&](const ModelStage& stage) {
+    Candidate rest;
+    rest.effects.assign(last.added.begin() + static_cast<std::ptrdiff_t>(stage.added.size()),
+                        last.added.end());
+    rest.fitted = last.fitted;
+    rest.validation_rms_m = last.fitted.validation_rms_m;
+    rest.p_value = chance(context, stage.fitted, last.fitted);
+    rest.fitted_at_all = true;
+    return is_gain(context, stage, rest);
+  };
   const auto end = std::find_if(path.begin(), path.end() - 1, [&](const ModelStage& stage) {
-    return is_explained(context, stage) && stage.fitted.validation_rms_m < enough_m;
+    return is_explained(context, stage) && !improved(stage);
   });
-  path.erase(end + 1, path.end());
+  path.erase(end == path.end() - 1 ? path.end() : end + 1, path.end());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/law_search.h"
+#include "estimator/greybox/selection/noise_credibility.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "plant_sim/model_file.h"
 

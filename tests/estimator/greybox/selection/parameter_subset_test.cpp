@@ -30,6 +30,23 @@ TEST(LeavesItsRange, AResonanceWithoutDampingStandsForSomethingElse) {
   EXPECT_FALSE(leaves_its_range(resonance(0.0, -1, 0.03, 0), 0));  // absent
 }
 
+TEST(IdleRefinements, AreDroppedFromAddedEffectsAlone) {
+  FitSummary fitted;
+  fitted.parameters.resize(2);
+  fitted.parameters[0].name = "friction.coulomb_N";
+  fitted.parameters[1].name = "friction.static_N";
+  fitted.parameters[1].refinement = 1;
+  fitted.theta = Eigen::Vector2d(0.5, 0.0);
+  fitted.at_bound = {0, -1};
+  fitted.jacobian = Eigen::MatrixXd::Ones(3, 2);
+  drop_idle_refinements({}, fitted);  // of the model file: its value would come back
+  EXPECT_EQ(fitted.parameters.size(), 2U);
+  drop_idle_refinements({"friction"}, fitted);
+  ASSERT_EQ(fitted.parameters.size(), 1U);
+  EXPECT_EQ(fitted.parameters[0].name, "friction.coulomb_N");
+  EXPECT_EQ(fitted.jacobian.cols(), 1);
+}
+
 /// A friction that turns gradually, over a width of which 0.05 is the least.
 FitSummary gradual_friction(double width) {
   FitSummary fitted;
