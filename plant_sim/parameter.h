@@ -22,8 +22,8 @@ struct ParameterInfo {
   int refinement = 0;
   /// Effects: number of the refinement whose place this one takes; 0 stands beside all.
   int instead_of = 0;
-  /// Effects: 2 where the simulation begins to change with the square of the value; a fit then moves
-  /// the square.
+  /// Effects: 2 where the simulation begins to change with the square of the value: a fit then
+  /// moves the square.
   int order = 1;
 };
 

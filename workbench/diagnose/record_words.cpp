@@ -169,11 +169,14 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
         d.better.step_s, given_step_s));
   }
   if (d.has_coarse_step()) {
-    out.push_back(fmt::format(
-        "a quarter of the integration step changes the simulation by {}, {} times the noise "
-        "floor: values may be off by more than their errors; run again with --set step_s={}",
-        config::units::length_words(d.step_error_m),
-        config::units::three_digits(d.step_error_m / d.noise_floor_m), finer_step_words(d)));
+    out.push_back(
+        fmt::format("a quarter of the integration step changes the simulation by {}, {} times {}: "
+                    "values may be "
+                    "off by more than their errors; run again with --set step_s={}",
+                    config::units::length_words(d.step_error_m),
+                    config::units::three_digits(d.step_error_m / d.floor_m()),
+                    d.floor_m() > d.noise_floor_m ? "what no model can explain" : "the noise floor",
+                    finer_step_words(d)));
   }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;

@@ -12,9 +12,8 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(FreeParameter, GoesThereAndBackOnEveryScale) {
-  for (const ParameterScale scale :
-       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal,
-        ParameterScale::square}) {
+  for (const ParameterScale scale : {ParameterScale::linear, ParameterScale::logarithmic,
+                                     ParameterScale::reciprocal, ParameterScale::square}) {
     const FreeParameter p{"x", scale, 40.0};
     for (const double s : {0.2, 1.0, 1.7}) EXPECT_NEAR(p.to_theta(p.to_physical(s)), s, 1e-12);
   }
@@ -28,9 +27,8 @@ TEST(FreeParameter, StandsForTheNeutralValueAtZero) {
 }
 
 TEST(FreeParameter, HasTheSlopeOfItsValue) {
-  for (const ParameterScale scale :
-       {ParameterScale::linear, ParameterScale::logarithmic, ParameterScale::reciprocal,
-        ParameterScale::square}) {
+  for (const ParameterScale scale : {ParameterScale::linear, ParameterScale::logarithmic,
+                                     ParameterScale::reciprocal, ParameterScale::square}) {
     const FreeParameter p{"x", scale, 40.0};
     const double h = 1e-6;
     const double difference = std::abs(p.to_physical(0.7 + h) - p.to_physical(0.7 - h)) / (2.0 * h);
