@@ -6,6 +6,8 @@
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/representative_segments.h"
+#include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/final_parameters.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/long_records.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/rig_scale.h"
 
 namespace estimator::greybox::selection {

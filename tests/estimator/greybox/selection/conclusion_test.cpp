@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
 
