@@ -241,8 +241,8 @@ class EffectSet : public EffectStore<S, E...> {
   /// True when formulas change the level of dry friction from step to step.
   [[nodiscard]] bool friction_varies() const { return formulas_.acts_on(Site::dry_friction); }
 
-  /// Sums over all dry frictions, in this step. `most_arrest_kg_per_s`: DryContact::arrest_kg_per_s
-  /// of a step that is divided as often as can be.
+  /// Sums over all dry frictions, in this step. `most_arrest_kg_per_s` is that of the function in
+  /// rigid_contact.h.
   [[nodiscard]] ContactLevels<S> contact_levels(const S& most_arrest_kg_per_s) const {
     ContactLevels<S> sum;
     const S arrest_kg_per_s = of_full_friction(most_arrest_kg_per_s);

@@ -35,19 +35,6 @@ constexpr double kDoesNotFollow = 0.5;
 constexpr double kNextToNothing = 0.01;
 constexpr double kCarriedAway = 0.2;
 
-/// RMS of the position about its mean.
-double motion_rms_m(const FitDataset& data) {
-  double square_m2 = 0.0;
-  std::size_t samples = 0;
-  for (const Dataset& record : data.records) {
-    const Eigen::Map<const Eigen::ArrayXd> y_m(record.y_m.data(),
-                                               static_cast<Eigen::Index>(record.size()));
-    square_m2 += (y_m - y_m.mean()).square().sum();
-    samples += record.size();
-  }
-  return std::sqrt(square_m2 / static_cast<double>(samples));
-}
-
 }  // namespace
 
 double rms_of_drive_N(const SearchContext& search, const FitSummary& fitted) {
@@ -67,7 +54,7 @@ double sensor_noise_m(const SearchContext& search, const InnovationSearch& innov
 bool loses_motion(const SearchContext& search, const InnovationSearch& innovations,
                   const std::optional<Disturbance>& disturbance) {
   const FitDataset& data = search.problem.data;
-  const double motion_m = motion_rms_m(data);
+  const double motion_m = rig_scale(search.problem.model, data).length_m;
   // lines are no small difference, and the random part is 0 where they are all that is seen
   if (!disturbance || !disturbance->lines.empty() || !(disturbance->value > 0.0) ||
       !(disturbance->rms_m > kCarriedAway * motion_m)) {
@@ -101,7 +88,8 @@ bool noise_is_credible(const SearchContext& search, const InnovationSearch& inno
   const double most_ratio = hides ? kMuchOfDrive_ratio : kMostOfDrive_ratio;
   const bool great = pushed && disturbance->value > most_ratio * drive_N;
   const bool lost =
-      !pushed && !amplified && rms_m > kDoesNotFollow * motion_rms_m(search.problem.data);
+      !pushed && !amplified &&
+      rms_m > kDoesNotFollow * rig_scale(search.problem.model, search.problem.data).length_m;
   return !(incredible || beyond || white || lost || great);
 }
 

@@ -1,5 +1,5 @@
-// Whether the noise model of a search explains what a simulation leaves, or stands for what the
-// model lacks.
+// Credibility of a search's noise model: it explains what a simulation leaves, or stands for what
+// the model lacks.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What is said of an effect that a search has taken, by its size.
+// The conclusion about an effect that a search has taken depends on its size.
 #include "estimator/greybox/selection/conclusion.h"
 
 #include <gmock/gmock.h>

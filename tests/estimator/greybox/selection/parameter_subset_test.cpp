@@ -39,7 +39,8 @@ TEST(IdleRefinements, AreDroppedFromAddedEffectsAlone) {
   fitted.theta = Eigen::Vector2d(0.5, 0.0);
   fitted.at_bound = {0, -1};
   fitted.jacobian = Eigen::MatrixXd::Ones(3, 2);
-  drop_idle_refinements({}, fitted);  // of the model file: its value would come back
+  // a model file's own effect keeps them: its value in the file would come back
+  drop_idle_refinements({}, fitted);
   EXPECT_EQ(fitted.parameters.size(), 2U);
   drop_idle_refinements({"friction"}, fitted);
   ASSERT_EQ(fitted.parameters.size(), 1U);
