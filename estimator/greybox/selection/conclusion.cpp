@@ -14,6 +14,7 @@
 #include "estimator/greybox/selection/noise_credibility.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/prediction_error.h"
+#include "estimator/greybox/selection/search_round.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -154,8 +155,9 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
                      : result.ambiguous.empty() ? Verdict::missing
                                                 : Verdict::undetermined;
     const ModelStage& base = result.search.path.front();
-    if (!context.cancelled() && base.added.empty() && is_explained(search, base) &&
-        are_all_within_errors(result)) {
+    if (!context.cancelled() && !result.searched_s && base.added.empty() &&
+        is_explained(search, base) && result.ambiguous.empty() && are_all_within_errors(result) &&
+        chance(search, base.fitted, final.fitted) > kChance) {
       ModelStage bare = base;
       result = before;
       result.search.path = {bare};
