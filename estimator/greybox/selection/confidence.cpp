@@ -153,6 +153,15 @@ bool shares_unit(const ParameterValue& one, const ParameterValue& other) {
   return one.name == other.name || (!unit.empty() && config::units::unit_of(other.name) == unit);
 }
 
+/// True for a refinement of an effect; of a formula all further parameters count as such.
+bool is_refinement(const std::string& effect, const ParameterValue& p) {
+  const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
+  if (info == nullptr) return true;
+  return std::any_of(info->parameters.begin(), info->parameters.end(), [&](const auto& own) {
+    return own.refinement > 0 && p.name == effect + "." + own.name;
+  });
+}
+
 /// Doubt by the effect's size, its first parameter. Where that is zero or within its error, a
 /// refinement in its unit may be clear: friction at rest, of which a record cannot tell how far it
 /// falls while it slides.
@@ -163,7 +172,8 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
   if (size == diagnosis.parameters.end() || is_clear_of_error(*size, least)) return {};
   const bool refined = (size->value == 0.0 || !size->at_bound) &&
                        std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
-                         return is_own(p) && shares_unit(*size, p) && is_clear_of_error(p, least);
+                         return is_own(p) && is_refinement(effect, p) && shares_unit(*size, p) &&
+                                is_clear_of_error(p, least);
                        });
   if (refined) return {};
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;

@@ -377,6 +377,7 @@ void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& option
   Diagnosis again = diagnose_by_steps(*finer, options);
   if (options.cancel && options.cancel()) {
     result.search.interrupted = true;
+    weigh_doubts(result);
     return;
   }
   if (!is_open(again) || again.rms_after_m < kFinerLeaves * result.rms_after_m) {

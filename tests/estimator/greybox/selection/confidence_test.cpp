@@ -36,6 +36,14 @@ TEST(Confidence, ASizeWithinItsErrorIsNotEstablishedWhateverItsRefinements) {
   EXPECT_THAT(named(unexplained()), ElementsAre("backlash within_error"));
 }
 
+TEST(Confidence, AWavelengthMakesNoAmplitudeWithinItsErrorSure) {
+  Diagnosis d = unexplained();
+  d.missing = {"encoder_eccentricity"};
+  d.parameters = {{"encoder_eccentricity.amplitude_m", 18e-6, 73e-6, false},
+                  {"encoder_eccentricity.wavelength_m", 4.8e-3, 1e-4, false}};
+  EXPECT_THAT(named(d), ElementsAre("encoder_eccentricity within_error"));
+}
+
 TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   Diagnosis d = unexplained();
   d.rms_before_m = 5e-3;
