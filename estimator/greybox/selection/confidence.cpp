@@ -153,7 +153,8 @@ bool shares_unit(const ParameterValue& one, const ParameterValue& other) {
   return one.name == other.name || (!unit.empty() && config::units::unit_of(other.name) == unit);
 }
 
-/// True for a refinement of an effect; of a formula all further parameters count as such.
+/// True for a refinement of an effect. Every parameter of a formula counts as one: a curve has
+/// several values of one unit, of which the first may well be zero.
 bool is_refinement(const std::string& effect, const ParameterValue& p) {
   const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
   if (info == nullptr) return true;
@@ -366,6 +367,7 @@ void weigh_doubts(Diagnosis& diagnosis) {
       std::any_of(diagnosis.laws.begin(), diagnosis.laws.end(), is_doubted)) {
     const bool at_floor = diagnosis.rms_after_m <= kUnexplained * diagnosis.floor_m();
     diagnosis.verdict = at_floor ? Verdict::undetermined : Verdict::unexplained;
+    diagnosis.possible = possible_effects(diagnosis);
   }
 }
 

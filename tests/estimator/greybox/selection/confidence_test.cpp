@@ -164,6 +164,8 @@ TEST(Confidence, ALawThatIsNotEstablishedAtTheFloorIsUndetermined) {
     d.rms_after_m = times * d.floor_m();
     weigh_doubts(d);
     EXPECT_EQ(d.verdict, times > 2.0 ? Verdict::unexplained : Verdict::undetermined) << times;
+    // the error that remains beside such a law is a doubt on the friction
+    EXPECT_EQ(d.established().empty(), times > 2.0) << times;
   }
 }
 
