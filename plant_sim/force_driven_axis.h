@@ -97,7 +97,7 @@ class ForceDrivenAxis {
     inverse_mass_ = S(1.0) / driven_kg;
     most_arrest_kg_per_s_ = most_arrest_kg_per_s(driven_kg, step_s);
     contact_ = effects.contact_levels(most_arrest_kg_per_s_);
-    rubs_ = !all(contact_.braking_N + contact_.gradual_N <= S(0.0));
+    rubs_ = !all(contact_.braking_N + contact_.gradual_N + contact_.spring_N_per_m <= S(0.0));
     constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
     spring_rate_ = max(sqrt(effects.stiffness_N_per_m(S(0.0)) * inverse_mass_),
                        S(kFiner) * effects.coupling_rate_per_s());
@@ -150,7 +150,8 @@ class ForceDrivenAxis {
         clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
     if (!rubs_) return parts;
     const auto turns = turns_within(v_mps, free_N, contact_, step_per_kg);
-    return max(parts, select(turns, S(kTurnDivisions), S(1.0)));
+    const S turned = effects.turn_parts({v_mps, free_N, inverse_mass_, S(step_s_)});
+    return max(parts, max(turned, select(turns, S(kTurnDivisions), S(1.0))));
   }
 
   void integrate(const S& drive_V, const S& step_s) {

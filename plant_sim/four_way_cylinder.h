@@ -147,7 +147,7 @@ class FourWayCylinder {
     bool cushioned;
     S most_arrest_kg_per_s;
     effects::ContactLevels<S> contact;
-    bool brakes, turns_gradually;
+    bool brakes, turns_gradually, yields;
     DisturbedParts<S> disturbed;
     S valve_gain_m_per_V, most_orifice;
     S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, steady_rate;

@@ -146,6 +146,7 @@ void FourWayCylinder<S, Design>::take_contact() {
   derived_.contact = effects.contact_levels(derived_.most_arrest_kg_per_s);
   derived_.brakes = !all(derived_.contact.braking_N <= S(0.0));
   derived_.turns_gradually = !all(derived_.contact.gradual_N <= S(0.0));
+  derived_.yields = !all(derived_.contact.spring_N_per_m <= S(0.0));
 }
 
 /// The slowest that the rod can become within the step.
@@ -233,6 +234,11 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
     const auto turns = turns_within(state.v_mps, free_N(), derived_.contact, step_per_kg);
     turned = select(turns, S(kTurnDivisions), turned);
   }
+  if (derived_.yields) {
+    turned =
+        max(turned,
+            effects.turn_parts({state.v_mps, free_N(), derived_.inverse_mass, S(derived_.step_s)}));
+  }
   const S once_kg_per_s = derived_.mass_kg * S(1.0 / derived_.step_s);
   arrest_kg_per_s_ = once_kg_per_s;
   if (all(whole) && all(turned <= S(1.0))) {
@@ -244,12 +250,18 @@ void FourWayCylinder<S, Design>::step(const S& u_V) {
     effects.end_step([&] { return motion(state); }, derived_.step_s);
     return;
   }
-  const S parts = max(turned, select(whole, S(1.0), divisions(drive_V)));
+  const bool at_limits = !all(whole);
+  const S parts = at_limits ? max(turned, select(whole, S(1.0), divisions(drive_V))) : turned;
   const S part_s = S(derived_.step_s) / parts;
   arrest_kg_per_s_ = once_kg_per_s * parts;
   const int most = static_cast<int>(reduce_max(parts));
   for (int i = 0; i < most; ++i) {
-    integrate<true, true>(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
+    const S length_s = select(S(static_cast<double>(i)) < parts, part_s, S(0.0));
+    if (at_limits) {
+      integrate<true, true>(drive_V, length_s);
+    } else {
+      integrate<false, true>(drive_V, length_s);
+    }
   }
   effects.end_step([&] { return motion(state); }, derived_.step_s);
 }

@@ -252,8 +252,22 @@ class EffectSet : public EffectStore<S, E...> {
           sum.holding_N += friction_ratio_ * one.holding_N;
           sum.braking_N += friction_ratio_ * one.braking_N;
           sum.gradual_N += friction_ratio_ * one.gradual_N;
+          sum.spring_N_per_m += friction_ratio_ * one.spring_N_per_m;
         });
     return sum;
+  }
+
+  /// The most that a dry friction asks for.
+  [[nodiscard]] S turn_parts(TurningPart<S> step) const {
+    S parts = 1.0;
+    step.free_N = of_full_friction(step.free_N);
+    step.inverse_mass_per_kg = step.inverse_mass_per_kg * friction_ratio_;
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
+          if constexpr (requires { T::turn_parts(p, memory, step); })
+            parts = max(parts, T::turn_parts(p, memory, step));
+        });
+    return parts;
   }
 
   /// At speeds from `least_mps` to `v_mps`; `most_arrest_kg_per_s` as for contact_levels().

@@ -3,12 +3,14 @@
 //   sliding level   g(v) = Fc' + max(Fs - Fc', 0) exp(-(v/vs)^2),   Fc' = Fc (1 + r sign v)
 //   rigid (k = 0)   F = g(v) sign v while it slides; at rest F holds the other forces up to g(0)
 //   gradual         F = g(v) tanh(v/vt)   (without k, where vt > 0)
-//   pre-sliding     F = k z + s1 z',  dz = dx - |dx| k z / g(v)   (a spring that yields at g)
+//   pre-sliding     F = k z + s1 exp(-(v/vd)^2) z',  dz = dx - |dx| k z / g(v)
+//                   (a spring that yields at g)
 //
 // Fc  coulomb_N    Fs  static_N (below Fc: no rise)    vs  stribeck_mps    r  direction_ratio
 // vt  transition_mps    k  presliding_stiffness_N_per_m    x  rod position
 // z   bristle deflection, m
 // s1  presliding_damping_N_s_per_m    with k only; 0 is Dahl's law, above it the LuGre law
+// vd  damping_speed_mps    infinite in the law's first form; a finite one keeps it passive
 // Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
 // would stop the rod within one part of a step, F is just the force that does so, never one that
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
@@ -47,6 +49,7 @@ struct Friction {
     S presliding_damping_N_s_per_m = 0.0;
     S direction_ratio = 0.0;
     S transition_mps = 0.0;
+    S damping_speed_mps = std::numeric_limits<double>::infinity();
 
     template <class V>
     void visit(V&& v) {
@@ -70,6 +73,11 @@ struct Friction {
                       "speed over which it turns its sign; no effect with a pre-sliding stiffness",
                       0.0, 10.0, 0.001, 0.0, 0.0, 4, 2},
         transition_mps);
+      v(ParameterInfo{"damping_speed_mps",
+                      "speed over which the pre-sliding damping fades; inf is none", 1e-6,
+                      std::numeric_limits<double>::infinity(), 0.01,
+                      std::numeric_limits<double>::infinity(), 0.0, 5},
+        damping_speed_mps);
     }
   };
   struct Memory {
@@ -98,7 +106,7 @@ struct Friction {
     const S along_N = select(at.v_mps < S(0.0), -spring_N, spring_N);
     const S level = max(select(at.v_mps < S(0.0), backward_N, forward_N), S(kLeastLevel_N));
     const S ratio = along_N / level;
-    const S damped_N = p.presliding_damping_N_s_per_m * abs(at.v_mps) * (S(1.0) - ratio);
+    const S damped_N = damping_N_s_per_m(p, at.v_mps) * abs(at.v_mps) * (S(1.0) - ratio);
     const S total_N = along_N + max(damped_N, -along_N * min(ratio, S(1.0)));
     const S bristle_N = select(at.v_mps < S(0.0), -total_N, total_N);
     return select(bristled, bristle_N, rigid_N);
@@ -124,7 +132,27 @@ struct Friction {
       return select(without_spring, select(gradual, gradual_N, rigid_N), S(0.0));
     };
     const S least_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
-    return {contact_N(least_N, S(0.0)), contact_N(most_N(p), S(0.0)), contact_N(S(0.0), most_N(p))};
+    return {contact_N(least_N, S(0.0)), contact_N(most_N(p), S(0.0)), contact_N(S(0.0), most_N(p)),
+            max(p.presliding_stiffness_N_per_m, S(0.0))};
+  }
+
+  /// Bristles bend with the way there and back, of which a step that turns sees the difference;
+  /// and a step must follow Stribeck's rise.
+  static S turn_parts(const Parameters& p, const Memory& memory, const TurningPart<S>& step) {
+    const S& k = p.presliding_stiffness_N_per_m;
+    if (all(k <= S(0.0))) return S(1.0);
+    const S net_N = abs(step.free_N - k * memory.deflection_m);
+    const S change_mps = net_N * step.inverse_mass_per_kg * step.step_s;
+    const S least_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), S(kLeastLevel_N));
+    const S lengths = change_mps * step.step_s * k / least_N;
+    const S at_turn = sqrt(lengths * S(1.0 / kTurnLengths));
+    const S margin_mps = S(kTurnMargin) * change_mps;
+    const S turned = select(abs(step.v_mps) < margin_mps, at_turn, S(1.0));
+    const S stribeck_mps = max(p.stribeck_mps, S(kLeastStribeck_mps));
+    const auto on_rise =
+        (p.static_N > least_N) & (abs(step.v_mps) < S(kStribeckReach) * stribeck_mps + margin_mps);
+    const S risen = select(on_rise, change_mps / (S(kOfStribeck) * stribeck_mps), S(1.0));
+    return select(k > S(0.0), clamp(ceil(max(turned, risen)), S(1.0), S(kMostTurnParts)), S(1.0));
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
@@ -167,9 +195,21 @@ struct Friction {
   static constexpr double kFiner = 2.0;               ///< the curve bends within a transition
   static constexpr double kTransitions = 4.0;         ///< tanh beyond has a slope under 0.2 %
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
-  static constexpr double kNoRise = 700.0;            ///< e^-700 is still a normal number
+  static constexpr double kTurnMargin = 2.0;          ///< of the speed's change within a step
+  static constexpr double kTurnLengths = 0.002;       ///< way within a part, in lengths of yielding
+  static constexpr double kStribeckReach = 3.0;       ///< the exponential beyond is 1e-4
+  static constexpr double kOfStribeck = 0.1;          ///< change of the speed within a part
+  static constexpr double kMostTurnParts = 16.0;
+  static constexpr double kNoRise = 700.0;  ///< e^-700 is still a normal number
   static constexpr double kLeastLevel_N = 1e-9;
   static constexpr double kFewLengths = 1e-6;
+
+  static S damping_N_s_per_m(const Parameters& p, const S& v_mps) {
+    const S infinite = std::numeric_limits<double>::infinity();
+    if (all(p.damping_speed_mps >= infinite)) return p.presliding_damping_N_s_per_m;
+    const S ratio = v_mps / p.damping_speed_mps;
+    return p.presliding_damping_N_s_per_m * decay(min(ratio * ratio, S(kNoRise)));
+  }
 
   static S rise_ratio(const Parameters& p, const S& v_mps) {
     const S least_N = p.coulomb_N * (S(1.0) - abs(p.direction_ratio));
@@ -200,8 +240,9 @@ struct Friction {
     const auto few = lengths < S(kFewLengths);
     const S share =
         select(few, S(1.0) - S(0.5) * lengths, (S(1.0) - remains) / select(few, S(1.0), lengths));
-    const S from_m = direction * from_N / k;
-    const S to_m = direction * to_N / k;
+    const S along_m_per_N = direction / k;
+    const S from_m = from_N * along_m_per_N;
+    const S to_m = to_N * along_m_per_N;
     const S moved_m = to_m + (memory.deflection_m - from_m) * remains - (to_m - from_m) * share;
     return select(abs(travel_m) <= S(0.0), memory.deflection_m, moved_m);
   }

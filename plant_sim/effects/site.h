@@ -28,7 +28,9 @@
 // declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv, at the
 // highest speed within the step, of a dry friction at the lowest, with that of the shortest part of
 // a step, `S slope_N_s_per_m(p, least_mps, most_arrest_kg_per_s)`,
-// `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
+// `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`, and of a
+// dry friction `S turn_parts(p, memory, TurningPart)`, into how many parts it asks for a step to be
+// divided within which the motion may turn.
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have
 // `void accept(p, memory, travel_m, v_mps)`, called once per accepted integration step,
@@ -95,9 +97,19 @@ struct DryContact {
 /// Forces of dry friction that decide how a step is divided; 0 where it has no such contact.
 template <class S>
 struct ContactLevels {
-  S holding_N = 0.0;  ///< a rigid contact holds so much at rest, whichever way it is pushed
-  S braking_N = 0.0;  ///< a rigid contact brakes with no more
-  S gradual_N = 0.0;  ///< a contact that turns its sign gradually rubs with no more
+  S holding_N = 0.0;       ///< a rigid contact holds so much at rest, whichever way it is pushed
+  S braking_N = 0.0;       ///< a rigid contact brakes with no more
+  S gradual_N = 0.0;       ///< a contact that turns its sign gradually rubs with no more
+  S spring_N_per_m = 0.0;  ///< of a contact that yields before it slides
+};
+
+/// A step within which a dry friction may turn.
+template <class S>
+struct TurningPart {
+  S v_mps;   ///< at its beginning
+  S free_N;  ///< sum of all other forces on the moving part, positive extends
+  S inverse_mass_per_kg;
+  S step_s;
 };
 
 /// A mass on a spring, ahead of the moving part that carries it.

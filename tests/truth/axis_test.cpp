@@ -92,11 +92,15 @@ TEST(TruthAxis, KeepsItsEnergyOverARipple) {
   hidden.ripple_N = 12.0;
   hidden.ripple_wavelength_m = 0.016;
   hidden.ripple_phase_rad = 0.7;
+  hidden.ripple_second_sin_N = 3.0;
+  hidden.ripple_second_cos_N = -2.0;
   Rig rig = rig_of(without_damping(), hidden);
   rig.x[1] = 0.1;
   const auto energy_J = [&] {
     const double turn = 2.0 * kPi * rig.x[0] / 0.016 + 0.7;
-    return 50.0 * rig.x[1] * rig.x[1] - 12.0 * 0.016 / (2.0 * kPi) * std::cos(turn);
+    const double along_N =
+        12.0 * std::cos(turn) + 1.5 * std::cos(2.0 * turn) + 1.0 * std::sin(2.0 * turn);
+    return 50.0 * rig.x[1] * rig.x[1] - 0.016 / (2.0 * kPi) * along_N;
   };
   const double before_J = energy_J();
   double least_mps = 0.1;

@@ -62,6 +62,33 @@ TEST(TruthFriction, SlidesSteadilyAtTheLevelOfStribecksCurve) {
   }
 }
 
+TEST(TruthFriction, DampsItsBristlesLessTheFasterItSlides) {
+  Hidden hidden;
+  hidden.coulomb_N = 150.0;
+  hidden.bristle_N_s_per_m = 700.0;
+  hidden.damping_speed_mps = 0.01;
+  const Actuator actuator(Plant{}, hidden, LeftOut{});
+  for (const double v_mps : {-0.02, 0.005, 0.02}) {
+    const double ratio = v_mps / 0.01;
+    EXPECT_NEAR(actuator.friction_N(0.0, v_mps), 700.0 * v_mps * std::exp(-ratio * ratio), 1e-9);
+  }
+}
+
+TEST(TruthFriction, StaysOnBristlesStifferThanItsSteps) {
+  Plant plant;
+  plant.damping_N_s_per_m = 0.0;
+  Hidden hidden;
+  hidden.coulomb_N = 2.0;
+  hidden.presliding_N_per_m = 1e8;
+  hidden.bristle_N_s_per_m = 0.0;
+  const Actuator actuator(plant, hidden, LeftOut{});
+  // at 0.2 m/s the bristles follow within 0.1 us, a hundredth of the step
+  State x = actuator.rest(kCentre_m);
+  x[1] = 0.2;
+  actuator.step(x, 0.0, 0.0, 1e-5);
+  EXPECT_NEAR(1e8 * x[6], 2.0, 0.02);
+}
+
 TEST(TruthFriction, TakesFourForcesPerStiffnessFromEachSwingOfTheRod) {
   Plant plant;
   plant.damping_N_s_per_m = 0.0;

@@ -7,6 +7,8 @@ namespace truth {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
+/// Steps times rate of decay up to which Heun's method is stable.
+constexpr double kStable = 2.0;
 
 double sign(double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); }
 
@@ -29,7 +31,9 @@ double Machine::bristle_rate_mps(double z_m, double v_mps) const {
 
 double Machine::friction_N(double z_m, double v_mps) const {
   if (hidden.coulomb_N <= 0.0) return 0.0;
-  return hidden.presliding_N_per_m * z_m + hidden.bristle_N_s_per_m * bristle_rate_mps(z_m, v_mps);
+  const double fast = v_mps / hidden.damping_speed_mps;
+  return hidden.presliding_N_per_m * z_m +
+         hidden.bristle_N_s_per_m * std::exp(-fast * fast) * bristle_rate_mps(z_m, v_mps);
 }
 
 double Machine::resisting_N(double y_m, double v_mps, double t_s) const {
@@ -40,8 +44,9 @@ double Machine::resisting_N(double y_m, double v_mps, double t_s) const {
     force_N += sliding_level_N(hidden, v_mps) * std::tanh(v_mps / hidden.transition_mps);
   }
   if (hidden.ripple_N != 0.0) {
-    force_N += hidden.ripple_N *
-               std::sin(kTwoPi * y_m / hidden.ripple_wavelength_m + hidden.ripple_phase_rad);
+    const double w = kTwoPi * y_m / hidden.ripple_wavelength_m + hidden.ripple_phase_rad;
+    force_N += hidden.ripple_N * std::sin(w) + hidden.ripple_second_sin_N * std::sin(2.0 * w) +
+               hidden.ripple_second_cos_N * std::cos(2.0 * w);
   }
   return force_N + outside_N + left_out.force_N(y_m, v_mps, t_s);
 }
@@ -68,7 +73,20 @@ double Machine::drawn_m3ps(double k, double supply_Pa, double port_Pa) const {
   return std::sqrt(half * half + k * k * drop_Pa) - half;
 }
 
+int Machine::parts(const State& x, double step_s) const {
+  if (hidden.coulomb_N <= 0.0 || hidden.transition_mps > 0.0) return 1;
+  const double v_mps = x[1];
+  const double rate_per_s =
+      hidden.presliding_N_per_m * std::abs(v_mps) / sliding_level_N(hidden, v_mps);
+  return rate_per_s * step_s > kStable ? static_cast<int>(std::ceil(rate_per_s * step_s)) : 1;
+}
+
 void Machine::step(State& x, double u_V, double t_s, double step_s) const {
+  const int count = parts(x, step_s);
+  for (int i = 0; i < count; ++i) part_step(x, u_V, t_s + step_s * i / count, step_s / count);
+}
+
+void Machine::part_step(State& x, double u_V, double t_s, double step_s) const {
   const State first = rate(x, u_V, t_s);
   State ahead{};
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + step_s * first[i];

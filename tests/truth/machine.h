@@ -1,9 +1,10 @@
 // The moving parts: equations that all plants of this folder share, integrated by Heun's method.
 //
-//   friction (LuGre, or smooth: F = g(v) tanh(v/vt)): z' = v - s0 |v| z / g(v),  F = s0 z + s1 z',
+//   friction (LuGre, or smooth: F = g(v) tanh(v/vt)): z' = v - s0 |v| z / g(v),
+//                     F = s0 z + s1 exp(-(v/vd)^2) z',
 //                     g = Fc (1 +- r) + (Fs - Fc)+ exp(-(v/vs)^2)
-//   load:             F = f + k (y - rest) + (c + c') v |v| + d' v + a sin(2 pi y/wavelength +
-//   phase)
+//   load:             F = f + k (y - rest) + (c + c') v |v| + d' v + a sin w + s sin 2w + c cos 2w,
+//                     w = 2 pi y/wavelength + phase
 //
 // Source of LuGre: Canudas de Wit, Olsson, Astrom, Lischinsky (1995).
 #pragma once
@@ -39,7 +40,7 @@ class Machine {
   /// Supply pressure at the valve: what the flow drawn leaves of it.
   [[nodiscard]] virtual double inlet_Pa(const State&, double) const { return 0.0; }
 
-  /// One step of Heun's method.
+  /// One step of Heun's method; in parts where stiff bristles at a low level need them.
   void step(State& x, double u_V, double t_s, double step_s) const;
   /// Force of the bristles.
   [[nodiscard]] double friction_N(double z_m, double v_mps) const;
@@ -49,6 +50,10 @@ class Machine {
   /// From outside, as they are now.
   double outside_N = 0.0;
   double outside_Pa = 0.0;
+
+ private:
+  [[nodiscard]] int parts(const State& x, double step_s) const;
+  void part_step(State& x, double u_V, double t_s, double step_s) const;
 
  protected:
   /// Keeps the state where it can be after a step.

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -109,7 +112,9 @@ TEST(TruthRecord, OfAnotherRigChangesByUnderATenthOfItsNoiseWhenTheStepIsHalved)
   for (const char* words :
        {"friction.coulomb_N=20,friction.static_N=28,friction.bristle_N_s_per_m=2000",
         "friction.coulomb_N=20,friction.presliding_stiffness_N_per_m=3e5",
+        "friction.coulomb_N=20,friction.bristle_N_s_per_m=2000,friction.damping_speed_mps=0.01",
         "force_ripple.amplitude_N=12,force_ripple.wavelength_m=0.016",
+        "force_ripple.amplitude_N=12,force_ripple.wavelength_m=0.016,force_ripple.second_sin_N=3",
         "load_spring.stiffness_N_per_m=300,backlash.width_m=1e-4", "transport_delay.delay_s=0.0063",
         "quadratic_damping.coefficient_N_s2_per_m2=400,load_force.force_N=8",
         "left_out=elastic_shaft"}) {
@@ -149,6 +154,18 @@ TEST(TruthPlan, HidesAsManyEffectsAsThePlanSays) {
   EXPECT_TRUE(left.hidden.empty());
   EXPECT_NE(left.of.left_out.kind, LeftOut::Kind::none);
   EXPECT_THROW(plan_record("other", 1, 0, record), std::invalid_argument);
+}
+
+TEST(TruthPlan, AnswersWithoutTheValuesThatAreInfinite) {
+  Record record;
+  const Planned friction = plan_record("axes", 1, 0, record);
+  const std::string file = testing::TempDir() + "truth_answers.json";
+  write_answers(file, "axes", 1, {friction}, {1e-6});
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  EXPECT_NE(text.str().find("\"coulomb_N\": "), std::string::npos);
+  EXPECT_EQ(text.str().find("inf"), std::string::npos) << text.str();
+  std::remove(file.c_str());
 }
 
 TEST(TruthPlan, TakesAxesByTurnsLinearAndRotaryUndisturbedAndDisturbed) {

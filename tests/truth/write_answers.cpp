@@ -1,5 +1,6 @@
 // answers.json: what each record of a plan hides.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -33,6 +34,7 @@ std::string effect(const Planned& planned, std::size_t which) {
   for (const Parameter& parameter : parameters()) {
     if (parameter.effect != name) continue;
     const double value = value_of(parameter, planned.of);
+    if (!std::isfinite(value)) continue;  // an infinite value is none, and JSON has no word for it
     values << (values.tellp() > 0 ? ", " : "") << '"' << parameter.name << "\": " << value;
     if (parameter.tolerance > 0.0) {
       scored << (scored.tellp() > 0 ? ", " : "") << '"' << parameter.name

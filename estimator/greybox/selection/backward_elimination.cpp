@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimator/greybox/selection/further_refinements.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
@@ -109,26 +110,9 @@ void drop_refinements(const SearchContext& context, CrossValidation& halves, Mod
 
 void add_refinements(const SearchContext& context, CrossValidation& halves, ModelStage& stage) {
   for (const std::string& effect : stage.added) {
-    const auto info = std::find_if(context.problem.candidate_effects.begin(),
-                                   context.problem.candidate_effects.end(),
-                                   [&](const auto& absent) { return absent.name == effect; });
-    if (info == context.problem.candidate_effects.end()) continue;
-    std::set<int> missing;
-    const std::vector<FreeParameter> all = effect_parameters(*info, kEveryRefinement);
-    for (const FreeParameter& p : all) {
-      const bool there = std::any_of(stage.fitted.parameters.begin(), stage.fitted.parameters.end(),
-                                     [&](const auto& q) { return q.name == p.name; });
-      if (!there && p.refinement > kFirstRefinements && p.instead_of == 0)
-        missing.insert(p.refinement);
-    }
-    for (const int refinement : missing) {
+    for (const auto& refinement : further_refinements(context, stage.fitted, effect)) {
       const ParameterSubset plain = subset(stage.fitted, [](const auto&) { return true; });
-      ParameterSubset more = plain;
-      for (const FreeParameter& p : all) {
-        if (p.refinement == refinement) more.parameters.push_back(p);
-      }
-      more.start = VectorXd::Zero(static_cast<Index>(more.parameters.size()));
-      more.start.head(plain.start.size()) = plain.start;
+      const ParameterSubset more = refined(stage.fitted, refinement);
       if (!halves.holds(is_explained(context, stage), plain, more)) continue;
       stage.fitted =
           refit(context, more, context.problem.data.training_mask, wide(context.options.threads));

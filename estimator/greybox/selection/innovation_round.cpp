@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/further_refinements.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
@@ -315,7 +316,10 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const RoundOptio
     if (auto other = without_lines_of_resonance(plain, stage)) stage = *std::move(other);
   }
   drop_out_of_range(plain, stage, dropped);
-  if (is_effect) reconsider_sites(plain, stage);
+  if (is_effect) {
+    take_further_refinements(plain, options.evidence_nats, stage);
+    reconsider_sites(plain, stage);
+  }
   return true;
 }
 

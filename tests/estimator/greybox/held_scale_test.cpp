@@ -38,6 +38,8 @@ force_N = 300.0
 [effects.force_ripple]
 amplitude_N = 80.0
 wavelength_m = 0.01
+second_sin_N = 25.0
+second_cos_N = 15.0
 [effects.coupled_slaves]
 mass_kg = 20.0
 damping_N_s_per_m = 200.0

@@ -1,6 +1,12 @@
 // Dry friction against closed forms and against its own differential equation.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 #include "tests/plant_sim/support.h"
 
 namespace plant_sim::testing {
@@ -240,6 +246,99 @@ TEST(Friction, PresslidingStoresNoMoreThanItTakes) {
     given_J += 0.5 * (before_N + 1e7 * memory.deflection_m) * dx;
     const double stored_J = 0.5 * 1e7 * memory.deflection_m * memory.deflection_m;
     ASSERT_LE(stored_J, given_J + 1e-9) << i;
+  }
+}
+
+TEST(Friction, DampingOfTheBristlesFadesWithTheSpeed) {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.presliding_stiffness_N_per_m = 1e7;
+  p.presliding_damping_N_s_per_m = 5000.0;
+  for (const double v_mps : {-0.03, -0.004, 0.004, 0.03}) {
+    // bristles at rest: the damping alone
+    const effects::DryContact<double> at{v_mps, 0.0, 0.0, 5e5};
+    p.damping_speed_mps = std::numeric_limits<double>::infinity();
+    EXPECT_NEAR(F::friction_N(p, {}, at), 5000.0 * v_mps, 1e-9) << v_mps;
+    p.damping_speed_mps = 0.01;
+    EXPECT_NEAR(F::friction_N(p, {}, at), 5000.0 * v_mps * std::exp(-std::pow(v_mps / 0.01, 2)),
+                1e-9)
+        << v_mps;
+  }
+}
+
+struct Bristle {
+  double mass_kg;
+  double coulomb_N;
+  double static_N;
+  double stribeck_mps;
+  double stiffness_N_per_m;
+  double damping_N_s_per_m;
+  double damping_speed_mps;
+};
+
+/// Positions every 5 ms of a mass under 120 N sin(2 pi 0.7 t) on LuGre's bristles, by Runge and
+/// Kutta's method at 1 us: z' = v - k |v| z / g(v), F = k z + s1 exp(-(v/vd)^2) z'.
+std::vector<double> lugre_m(const Bristle& b, int samples) {
+  using State = std::array<double, 3>;
+  const auto rate = [&](const State& x, double force_N) -> State {
+    const double v_mps = x[1];
+    const double level_N =
+        b.coulomb_N + (b.static_N - b.coulomb_N) * std::exp(-std::pow(v_mps / b.stribeck_mps, 2));
+    const double z_mps = v_mps - b.stiffness_N_per_m * std::abs(v_mps) * x[2] / level_N;
+    const double damping =
+        b.damping_N_s_per_m * std::exp(-std::pow(v_mps / b.damping_speed_mps, 2));
+    return {v_mps, (force_N - b.stiffness_N_per_m * x[2] - damping * z_mps) / b.mass_kg, z_mps};
+  };
+  constexpr double kStep_s = 1e-6;
+  State x{};
+  std::vector<double> y_m;
+  for (int k = 0; k < samples; ++k) {
+    y_m.push_back(x[0]);
+    const double force_N = 120.0 * std::sin(2.0 * M_PI * 0.7 * 0.005 * k);
+    for (int i = 0; i < 5000; ++i) {
+      const State a = rate(x, force_N);
+      const auto ahead = [&](const State& slope, double by_s) {
+        return State{x[0] + by_s * slope[0], x[1] + by_s * slope[1], x[2] + by_s * slope[2]};
+      };
+      const State c = rate(ahead(a, 0.5 * kStep_s), force_N);
+      const State d = rate(ahead(c, 0.5 * kStep_s), force_N);
+      const State e = rate(ahead(d, kStep_s), force_N);
+      for (std::size_t j = 0; j < 3; ++j) {
+        x[j] += kStep_s / 6.0 * (a[j] + 2.0 * c[j] + 2.0 * d[j] + e[j]);
+      }
+    }
+  }
+  return y_m;
+}
+
+TEST(Friction, TurnsOnItsBristlesWithinASensorsNoiseOfTheirEquation) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const Bristle& b : {Bristle{100.0, 60.0, 60.0, 0.01, 5e6, 0.0, kInfinite},
+                           Bristle{100.0, 60.0, 85.0, 0.008, 5e6, 0.0, kInfinite},
+                           Bristle{100.0, 60.0, 85.0, 0.008, 5e6, 3000.0, 0.01}}) {
+    const std::vector<double> expected_m = lugre_m(b, 600);
+    auto axis = at_rest<Axis>();
+    axis->parameters.mass_kg = b.mass_kg;
+    axis->parameters.damping_N_s_per_m = 0.0;
+    axis->parameters.gain_N_per_V = 1.0;
+    set_effect(*axis, "friction", "coulomb_N", b.coulomb_N);
+    set_effect(*axis, "friction", "static_N", b.static_N);
+    set_effect(*axis, "friction", "stribeck_mps", b.stribeck_mps);
+    set_effect(*axis, "friction", "presliding_stiffness_N_per_m", b.stiffness_N_per_m);
+    set_effect(*axis, "friction", "presliding_damping_N_s_per_m", b.damping_N_s_per_m);
+    set_effect(*axis, "friction", "damping_speed_mps", b.damping_speed_mps);
+    axis->prepare(1e-3);
+    axis->reset();
+    const double from_m = axis->state.y_m;
+    double worst_m = 0.0;
+    double way_m = 0.0;
+    for (std::size_t k = 0; k < expected_m.size(); ++k) {
+      worst_m = std::max(worst_m, std::abs(axis->state.y_m - from_m - expected_m[k]));
+      way_m = std::max(way_m, std::abs(expected_m[k]));
+      hold(*axis, 120.0 * std::sin(2.0 * M_PI * 0.7 * 0.005 * static_cast<double>(k)), 0.005);
+    }
+    EXPECT_GT(way_m, 0.05);
+    EXPECT_LT(worst_m, 1e-6) << b.static_N << " " << b.damping_N_s_per_m;
   }
 }
 

@@ -110,6 +110,31 @@ TEST(ForceRipple, RepeatsWithItsWavelengthAlongTheStroke) {
   }
 }
 
+TEST(ForceRipple, IsTheSumOfASineAndItsSecondHarmonic) {
+  using Ripple = effects::ForceRipple<double>;
+  Ripple::Parameters p;
+  p.amplitude_N = 12.0;
+  p.wavelength_m = 0.016;
+  p.phase_rad = 0.7;
+  p.second_sin_N = 3.0;
+  p.second_cos_N = -2.0;
+  double steepest = 0.0;
+  for (double y_m = 0.0; y_m < 0.016; y_m += 1e-5) {
+    const double wave_rad = 2.0 * M_PI * y_m / 0.016 + 0.7;
+    EXPECT_NEAR(
+        Ripple::resisting_N(p, y_m, 0.0),
+        12.0 * std::sin(wave_rad) + 3.0 * std::sin(2.0 * wave_rad) - 2.0 * std::cos(2.0 * wave_rad),
+        1e-9)
+        << y_m;
+    const double slope =
+        12.0 * std::cos(wave_rad) + 6.0 * std::cos(2.0 * wave_rad) + 4.0 * std::sin(2.0 * wave_rad);
+    steepest = std::max(steepest, std::abs(slope) * 2.0 * M_PI / 0.016);
+  }
+  // what divides a step is no less than the steepest place
+  EXPECT_GE(Ripple::stiffness_N_per_m(p), steepest);
+  EXPECT_LE(Ripple::stiffness_N_per_m(p), 2.0 * steepest);
+}
+
 TEST(CoupledSlaves, AddMassAndDampingLikeAHeavierRod) {
   Actuator slaves;
   set_effect(slaves, "coupled_slaves", "mass_kg", 30.0);

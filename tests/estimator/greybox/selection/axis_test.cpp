@@ -197,6 +197,25 @@ TEST(AxisRipple, IsNamedWhereNoSimulationFollowsTheMotion) {
   EXPECT_NEAR(*better.value("force_ripple.wavelength_m"), 0.032, 1e-5);
 }
 
+// Magnets are no sines: what a sine leaves looks like another effect of the position.
+TEST(AxisRipple, TakesItsSecondHarmonicBeforeAnotherEffect) {
+  const auto ripple_N = [](double, double y_m) {
+    const double wave_rad = 2.0 * std::numbers::pi * y_m / 0.016 + 0.4;
+    return 12.0 * std::sin(wave_rad) + 3.0 * std::sin(2.0 * wave_rad) -
+           2.0 * std::cos(2.0 * wave_rad);
+  };
+  const SearchContext context = context_of(axis_record(kSteady, 0.0, ripple_N));
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("force_ripple"));
+  EXPECT_LT(d.rms_after_m, 1.05 * d.noise_floor_m);
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("force_ripple.wavelength_m"), 0.016, 1e-5);
+  EXPECT_NEAR(*better.value("force_ripple.amplitude_N"), 12.0, 0.1);
+  EXPECT_NEAR(*better.value("force_ripple.second_sin_N"), 3.0, 0.1);
+  EXPECT_NEAR(*better.value("force_ripple.second_cos_N"), -2.0, 0.1);
+}
+
 TEST(AxisRipple, IsAmplifiedWhereTheRandomPartIsNextToNothing) {
   const SearchContext context = axis_context(kSteady, 0.0);
   const InnovationSearch search;

@@ -7,6 +7,7 @@
 
 #include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
@@ -14,7 +15,6 @@ namespace {
 
 using diagnose_test::context_with;
 using diagnose_test::dataset_of;
-using testing::Contains;
 using testing::ElementsAre;
 
 Dataset record() {
@@ -105,12 +105,13 @@ TEST(CommandLead, IsNoneWhereItLeavesMoreWithoutTheEffect) {
       "plant.valve_gain_m_per_V=2.8574524e-05,plant.valve_natural_frequency_rad_per_s=576.686861,"
       "plant.valve_damping_ratio=0.6679733909",
       3134110008);
-  const SearchStart start = start_search(context);
-  ASSERT_THAT(start.branch.stage.added, Contains("internal_leakage"));
-  ModelStage far = start.first;
+  const ModelStage first = first_stage(context);
+  const ModelStage leaking =
+      diagnose_test::stage_with(context, first, {{"internal_leakage", 2e-12}});
+  ModelStage far = first;
   far.fitted.validation_rms_m = 1.0;
-  EXPECT_EQ(find_command_lead(context, far, start.branch.stage).samples, 1.5);
-  EXPECT_EQ(find_command_lead(context, start.first, start.branch.stage).samples, 0.0);
+  EXPECT_EQ(find_command_lead(context, far, leaking).samples, 1.5);
+  EXPECT_EQ(find_command_lead(context, first, leaking).samples, 0.0);
 }
 
 // Without the lead a second mass of many parameters leaves as little as the friction that is

@@ -60,7 +60,7 @@ StepError step_error_of(const plant_sim::ModelFile& model, const std::string& ri
 }
 
 // Oil and valve are integrated by a method of fourth order; bristles of a stiff friction slip
-// within a step.
+// within a part of a step.
 TEST(ErrorSources, StiffFrictionNeedsAShorterStepThanTheOil) {
   plant_sim::ModelFile sliding = thesis();
   for (auto& effect : sliding.effects) effect.present = effect.present || effect.name == "friction";
@@ -71,9 +71,10 @@ TEST(ErrorSources, StiffFrictionNeedsAShorterStepThanTheOil) {
     ASSERT_NE(sliding.value(name), nullptr) << name;
     *sliding.value(name) = value;
   }
-  EXPECT_LT(step_error_of(thesis(), "").rms_m, 1e-8);
+  const double of_oil_m = step_error_of(thesis(), "").rms_m;
+  EXPECT_LT(of_oil_m, 1e-8);
   const std::string rig = ",friction.coulomb_N=150,friction.static_N=260";
-  EXPECT_GT(step_error_of(sliding, rig).rms_m, 1e-7);
+  EXPECT_GT(step_error_of(sliding, rig).rms_m, 50.0 * of_oil_m);
 }
 
 }  // namespace

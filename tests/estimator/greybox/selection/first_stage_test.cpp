@@ -47,12 +47,13 @@ TEST(FirstStage, FindsTheFrictionOfAFileThatIsFarFromTheRigs) {
   EXPECT_NEAR(fitted.value("friction.static_N"), 80.0 * scale, 1.0);
 }
 
-// A second mass would take up what the coarse step leaves.
-TEST(FirstStage, IsFittedAgainWithAFinerStepWhereTheStepIsMostOfItsError) {
+// A second mass would take up what a coarse step leaves: the step is divided where a bristle turns.
+TEST(FirstStage, IsAtTheNoiseWithACoarseStepToo) {
   const SearchContext context = sticking_axis(0.005);
   const Diagnosis result = diagnose(context.problem, {});
   EXPECT_EQ(result.verdict, Verdict::nothing_missing);
-  EXPECT_EQ(result.better.step_s, 0.00125);
+  EXPECT_EQ(result.better.step_s, 0.005);
+  EXPECT_LT(result.rms_after_m, 1.1 * result.noise_floor_m);
 }
 
 }  // namespace
