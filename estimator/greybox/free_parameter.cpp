@@ -95,18 +95,25 @@ std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect
   return found;
 }
 
+bool is_given(const plant_sim::ModelFile& model, const std::string& effect,
+              const plant_sim::ParameterInfo& info) {
+  for (const plant_sim::ModelFile::Effect& one : model.effects) {
+    if (!one.present || one.name != effect) continue;
+    for (const plant_sim::NamedValue& p : one.parameters) {
+      if (p.name == info.name) return p.value != info.neutral;
+    }
+  }
+  return false;
+}
+
 std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model) {
   std::vector<FreeParameter> found;
-  plant_sim::ModelFile copy = model;
   for (const plant_sim::EffectInfo& info : plant_sim::effects_of(model)) {
-    const auto named = [&](const auto& effect) {
-      return effect.present && effect.name == info.name;
-    };
-    if (std::none_of(model.effects.begin(), model.effects.end(), named)) continue;
     const std::vector<FreeParameter> all = effect_parameters(info, kEveryRefinement);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const double* value = copy.value(all[i].name);
-      if (value != nullptr && *value != info.parameters[i].neutral) found.push_back(all[i]);
+      if (!is_given(model, info.name, info.parameters[i])) continue;
+      found.push_back(all[i]);
+      found.back().in_model = true;
     }
   }
   return found;

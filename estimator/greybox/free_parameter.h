@@ -36,6 +36,7 @@ struct FreeParameter {
   int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
   int instead_of = 0;       ///< plant_sim::ParameterInfo::instead_of
   double origin = 0.0;      ///< value at theta = 0 of a linear scale
+  bool in_model = false;    ///< an effect's, to which the model file gives a value
 
   [[nodiscard]] double to_physical(double theta) const;
   [[nodiscard]] double to_theta(double value) const;
@@ -46,6 +47,10 @@ struct FreeParameter {
 /// Plant parameters that may differ from the model file, with priors about the file's values
 /// (plant_sim::ParameterInfo::uncertainty_ratio).
 [[nodiscard]] std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model);
+
+/// True where the model gives that parameter of an effect a value.
+[[nodiscard]] bool is_given(const plant_sim::ModelFile& model, const std::string& effect,
+                            const plant_sim::ParameterInfo& info);
 
 /// Parameters of effects that the model has and that are not neutral.
 [[nodiscard]] std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model);

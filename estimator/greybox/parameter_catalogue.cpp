@@ -55,6 +55,7 @@ std::vector<CatalogueParameter> parameter_catalogue(const plant_sim::ModelFile& 
     const auto all = effect_parameters(effect, kEveryRefinement);
     for (std::size_t i = 0; i < all.size(); ++i) {
       found.push_back({all[i].name, effect.name, effect.parameters[i], all[i]});
+      found.back().free.in_model = is_given(model, effect.name, effect.parameters[i]);
     }
   }
   return found;

@@ -10,7 +10,8 @@ namespace workbench::diagnose {
 
 namespace selection = estimator::greybox::selection;
 
-/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
+/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model; of an
+/// effect that the model has, "friction beyond the model's own: static 181 +- 4 N".
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);
 

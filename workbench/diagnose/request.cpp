@@ -105,14 +105,28 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
   }
 }
 
+/// What is fixed of an effect that the model has is not sought either.
+void keep_fixed(const std::string& name, plant_sim::EffectInfo& refinements) {
+  const std::size_t dot = name.find('.');
+  std::erase_if(refinements.parameters, [&](const plant_sim::ParameterInfo& p) {
+    return dot == std::string::npos || name.substr(dot + 1) == p.name;
+  });
+}
+
 /// Refuses to keep what the model does not have: the sizes of such effects are what is sought.
-void require_fixed_present(const DiagnosisRequest& request,
-                           const std::vector<plant_sim::EffectInfo>& candidates) {
+void require_fixed_present(const DiagnosisRequest& request, const plant_sim::ModelFile& model,
+                           std::vector<plant_sim::EffectInfo>& candidates) {
   for (const std::string& name : greybox::split_names(request.selection.fix)) {
     const std::string effect = plant_sim::library_name(name.substr(0, name.find('.')));
-    const bool is_sought = std::any_of(candidates.begin(), candidates.end(),
-                                       [&](const auto& one) { return one.name == effect; });
-    if (!is_sought) continue;
+    const auto sought = std::find_if(candidates.begin(), candidates.end(),
+                                     [&](const auto& one) { return one.name == effect; });
+    if (sought == candidates.end()) continue;
+    const plant_sim::EffectInfo* known = plant_sim::find_effect(effect);
+    if (known != nullptr && selection::has_effect(model, *known)) {
+      keep_fixed(name, *sought);
+      if (sought->parameters.empty()) candidates.erase(sought);
+      continue;
+    }
     throw config::schema::UsageError(fmt::format(
         "--fix {}: the model states no size of {}, which is sought; --without {} leaves it out",
         name, effect, effect));
@@ -163,7 +177,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   part_from_candidates(request, prepared.problem);
   require_samples(prepared.problem.data, prepared.problem.plant_parameters.size());
   choose_effects(request, prepared.problem.candidate_effects);
-  require_fixed_present(request, prepared.problem.candidate_effects);
+  require_fixed_present(request, prepared.problem.model, prepared.problem.candidate_effects);
   prepared.problem.effects_only = !request.only.empty();
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   prepared.options.threads = request.threads > 0 ? request.threads : processors;

@@ -66,12 +66,13 @@ std::vector<ChangeScore> finalists(const InnovationStage& stage) {
 ChangeScore score_of_effect(const InnovationStage& stage, const std::string& effect) {
   ChangeScore score;
   for (const plant_sim::EffectInfo& candidate : stage.context.problem.candidate_effects) {
-    if (candidate.name != effect) continue;
-    score.parameter = effect_parameters(candidate, 0).front();
+    const std::vector<FreeParameter> sizes = effect_parameters(candidate, 0);
+    if (candidate.name != effect || sizes.empty()) continue;
+    score.parameter = sizes.front();
     score.absent = true;
   }
   for (const FreeParameter& own : stage.model.fitted.parameters) {
-    if (!belongs_to(own, effect)) continue;
+    if (effect_of(own) != effect) continue;
     score.parameter = own;
     score.absent = false;
     break;

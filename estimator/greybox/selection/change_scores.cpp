@@ -73,7 +73,7 @@ void add_unfitted(const InnovationStage& stage, Columns& columns) {
   for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
     const std::vector<FreeParameter> own = effect_parameters(effect, 0);
     const bool present = std::any_of(fitted.parameters.begin(), fitted.parameters.end(),
-                                     [&](const auto& p) { return belongs_to(p, effect.name); });
+                                     [&](const auto& p) { return effect_of(p) == effect.name; });
     if (own.empty() || own.front().scale != ParameterScale::linear || present) continue;
     sizes.push_back(own.front());
   }

@@ -165,16 +165,21 @@ bool is_refinement(const std::string& effect, const ParameterValue& p) {
 
 /// Doubt by the effect's size, its first parameter. Where that is zero or within its error, a
 /// refinement in its unit may be clear: friction at rest, of which a record cannot tell how far it
-/// falls while it slides.
+/// falls while it slides. Of an effect that the model has, any refinement may be what is missing.
 std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
-  const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
+  const auto of_effect = [&](const ParameterValue& p) {
+    return p.name.rfind(effect + ".", 0) == 0;
+  };
+  const auto is_own = [&](const ParameterValue& p) { return of_effect(p) && !p.in_model; };
   const double least = least_standard_errors(diagnosis);
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
   if (size == diagnosis.parameters.end() || is_clear_of_error(*size, least)) return {};
+  const bool has_more = std::any_of(diagnosis.parameters.begin(), diagnosis.parameters.end(),
+                                    [&](const auto& p) { return of_effect(p) && p.in_model; });
   const bool refined = (size->value == 0.0 || !size->at_bound) &&
                        std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
-                         return is_own(p) && is_refinement(effect, p) && shares_unit(*size, p) &&
-                                is_clear_of_error(p, least);
+                         return is_own(p) && is_refinement(effect, p) &&
+                                (has_more || shares_unit(*size, p)) && is_clear_of_error(p, least);
                        });
   if (refined) return {};
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;

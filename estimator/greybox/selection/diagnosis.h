@@ -41,6 +41,7 @@ struct ParameterValue {
   /// without a prior.
   double record_share = 1.0;
   double prior_sds = 0.0;  ///< distance from the prior's mean, in its standard deviations; signed
+  bool in_model = false;   ///< FreeParameter::in_model
 
   /// True when most of what is known is the prior: `std_error` is then no measurement's.
   [[nodiscard]] bool held_by_prior() const { return record_share < 0.51; }

@@ -32,6 +32,7 @@ void report_parameters(const SearchContext& context, const Eigen::VectorXd& erro
     const double whole = std::hypot(errors[k], scatter[k], step.shift[k]);
     const double error = at_bound ? std::nan("") : whole * p.slope(result.final.theta[k]);
     ParameterValue value{p.name, p.to_physical(result.final.theta[k]), error, at_bound};
+    value.in_model = p.in_model;
     if (std::isfinite(p.prior_sd) && p.prior_sd > 0.0) {
       value.prior_sds = (result.final.theta[k] - p.prior_mean) / p.prior_sd;
       const double ratio = errors[k] / p.prior_sd;

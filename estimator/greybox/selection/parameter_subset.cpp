@@ -122,7 +122,7 @@ void revive(const SearchContext& context, FitSummary& fitted) {
 
 bool is_idle(const FitSummary& fitted, const std::string& effect) {
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    if (belongs_to(fitted.parameters[i], effect)) {
+    if (belongs_to(fitted.parameters[i], effect) && fitted.parameters[i].refinement == 0) {
       return fitted.parameters[i].scale == ParameterScale::linear &&
              fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
     }

@@ -19,8 +19,9 @@ struct ParameterSubset {
 [[nodiscard]] inline std::string effect_of(const FreeParameter& parameter) {
   return parameter.name.substr(0, parameter.name.find('.'));
 }
+/// True for a parameter of an effect that was added to the model.
 [[nodiscard]] inline bool belongs_to(const FreeParameter& parameter, const std::string& effect) {
-  return parameter.name.rfind(effect + ".", 0) == 0;
+  return !parameter.in_model && parameter.name.rfind(effect + ".", 0) == 0;
 }
 
 /// Parameters with keep(parameter), starting at their present values.
@@ -63,7 +64,8 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 /// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
-/// True when the effect's size, its first parameter, is zero.
+/// True when the effect's size, its first parameter, is zero. A refinement of an effect that the
+/// model has is none.
 [[nodiscard]] bool is_idle(const FitSummary& fitted, const std::string& effect);
 /// Removes refinements of added effects that change nothing: at their neutral value, or without
 /// influence.

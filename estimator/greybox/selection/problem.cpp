@@ -1,13 +1,21 @@
 #include "estimator/greybox/selection/problem.h"
 
 #include <algorithm>
+#include <set>
 
+#include "estimator/greybox/selection/screening.h"
 #include "estimator/greybox/selection/typical_sizes.h"
 
 namespace estimator::greybox::selection {
 
 using plant_sim::EffectInfo;
 using plant_sim::ModelFile;
+using plant_sim::ParameterInfo;
+
+bool has_effect(const ModelFile& model, const EffectInfo& effect) {
+  return std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                     [&](const ParameterInfo& p) { return is_given(model, effect.name, p); });
+}
 
 std::vector<EffectInfo> absent_effects(const ModelFile& model) {
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
@@ -16,25 +24,46 @@ std::vector<EffectInfo> absent_effects(const ModelFile& model) {
       return std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end();
     });
   };
-  const auto acts = [&](const EffectInfo& effect) {
-    for (const ModelFile::Effect& entry : model.effects) {
-      if (entry.name != effect.name || !entry.present) continue;
-      for (std::size_t i = 0; i < entry.parameters.size(); ++i) {
-        if (entry.parameters[i].value != effect.parameters[i].neutral) return true;
-      }
-    }
-    return false;
-  };
   std::vector<EffectInfo> absent;
   for (const EffectInfo& effect : plant_sim::effects_of(model)) {
-    if (fits(effect) && !acts(effect)) absent.push_back(effect);
+    if (fits(effect) && !has_effect(model, effect)) absent.push_back(effect);
   }
   return absent;
+}
+
+std::vector<EffectInfo> lacking_refinements(const ModelFile& model) {
+  std::vector<EffectInfo> found;
+  for (EffectInfo effect : plant_sim::effect_library()) {
+    if (!has_effect(model, effect)) continue;
+    std::set<int> given;
+    for (const ParameterInfo& p : effect.parameters) {
+      if (is_given(model, effect.name, p)) given.insert(p.refinement);
+    }
+    std::erase_if(effect.parameters, [&](const ParameterInfo& p) {
+      return p.refinement == 0 || given.count(p.refinement) != 0 ||
+             (p.instead_of > 0 && given.count(p.instead_of) != 0);
+    });
+    if (effect.parameters.empty()) continue;
+    const auto by_number = [](const ParameterInfo& a, const ParameterInfo& b) {
+      return a.refinement < b.refinement;
+    };
+    const int first =
+        std::min_element(effect.parameters.begin(), effect.parameters.end(), by_number)->refinement;
+    // what no search starts with is sought as the effect's own size where nothing else is left
+    for (ParameterInfo& p : effect.parameters) {
+      if (first > kFirstRefinements && p.refinement == first) p.refinement = 0;
+    }
+    found.push_back(std::move(effect));
+  }
+  return found;
 }
 
 DiagnosisProblem make_problem(ModelFile model, FitDataset data) {
   DiagnosisProblem result;
   result.candidate_effects = absent_effects(model);
+  for (EffectInfo& effect : lacking_refinements(model)) {
+    result.candidate_effects.push_back(std::move(effect));
+  }
   scale_typical_sizes(model, data, result.candidate_effects);
   result.plant_parameters = plant_parameters(model);
   for (FreeParameter& p : present_parameters(model)) {

@@ -36,10 +36,11 @@ inline constexpr Eigen::Index kTrialSizes = 8;
 struct DiagnosisProblem {
   plant_sim::ModelFile model;
   FitDataset data;
-  std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
-  bool effects_only = false;                             ///< neither laws nor changes are sought
-  std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
-  Eigen::Index trial_sizes = kTrialSizes;                ///< fewer where they fit the rig
+  /// Offered by the plant and absent so far; of effects that the model has, what it lacks of them.
+  std::vector<plant_sim::EffectInfo> candidate_effects;
+  bool effects_only = false;                    ///< neither laws nor changes are sought
+  std::vector<FreeParameter> plant_parameters;  ///< plant and present effects
+  Eigen::Index trial_sizes = kTrialSizes;       ///< fewer where they fit the rig
   double interpolated_nats = 0.0;  ///< gain of interpolating the command, which is not exact
 };
 
@@ -71,8 +72,16 @@ struct SearchContext {
   [[nodiscard]] bool cancelled() const { return options.cancel && options.cancel(); }
 };
 
+/// True where the model gives any parameter of the effect a value.
+[[nodiscard]] bool has_effect(const plant_sim::ModelFile& model,
+                              const plant_sim::EffectInfo& effect);
+
 /// Effects offered by the plant that are absent from the model, or neutral in it.
 [[nodiscard]] std::vector<plant_sim::EffectInfo> absent_effects(const plant_sim::ModelFile& model);
+
+/// Refinements that effects of the model lack, as an effect of the same name that has nothing else.
+[[nodiscard]] std::vector<plant_sim::EffectInfo> lacking_refinements(
+    const plant_sim::ModelFile& model);
 
 [[nodiscard]] DiagnosisProblem make_problem(plant_sim::ModelFile model, FitDataset data);
 

@@ -5,8 +5,28 @@
 
 #include "config/units/quantity.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
+namespace {
+
+double typical_of(const FreeParameter& parameter) {
+  const plant_sim::EffectInfo* effect = plant_sim::find_effect(effect_of(parameter));
+  if (effect == nullptr) return parameter.unit;
+  for (const plant_sim::ParameterInfo& info : effect->parameters) {
+    if (parameter.name == effect->name + "." + info.name) return info.typical;
+  }
+  return parameter.unit;
+}
+
+/// theta of a parameter in the library's proportion to a size of its effect.
+double in_proportion(const FreeParameter& parameter, const FreeParameter& size, double size_theta) {
+  return parameter.to_theta(size.to_physical(size_theta) / typical_of(size) *
+                            typical_of(parameter));
+}
+
+}  // namespace
+
 std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
   std::vector<Eigen::VectorXd> starts;
   const std::vector<FreeParameter>& all = fitted.parameters;
@@ -18,9 +38,9 @@ std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
   for (const double share : {1.0, 1.0 / 3.0, 3.0}) {
     Eigen::VectorXd start = fitted.theta;
     bool any = false;
-    std::size_t first = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (i == 0 || effect_of(all[i]) != effect_of(all[i - 1])) first = i;
+      std::size_t first = 0;
+      while (effect_of(all[first]) != effect_of(all[i])) ++first;
       const auto with_it = [&](std::size_t k) {
         return is_dead(k) && all[k].refinement == all[i].refinement &&
                effect_of(all[k]) == effect_of(all[i]);
@@ -31,7 +51,9 @@ std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
       const bool same_unit =
           config::units::unit_of(all[i].name) == config::units::unit_of(all[first].name);
       const auto at = static_cast<Eigen::Index>(i);
-      const double value = same_unit ? start[static_cast<Eigen::Index>(first)] : share;
+      const double value = same_unit ? in_proportion(all[i], all[first],
+                                                     fitted.theta[static_cast<Eigen::Index>(first)])
+                                     : share;
       start[at] = std::clamp(value, all[i].lower, all[i].upper);
       any = true;
     }

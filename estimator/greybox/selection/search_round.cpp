@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 
+#include "estimator/greybox/selection/model_refinements.h"
 #include "estimator/parallel.h"
 #include "estimator/residual/diebold_mariano.h"
 
@@ -277,6 +278,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });
+  refit_model_refinements(context, stage, round.candidates);
   refine_best(context, stage, round.candidates);
   return round;
 }

@@ -105,6 +105,32 @@ TEST_F(DiagnoseRequest, AnEffectThatTheModelLacksIsNotKept) {
   EXPECT_NO_THROW((void)prepare(request_));
 }
 
+TEST_F(DiagnoseRequest, WhatTheModelLacksOfAnEffectIsSoughtUnlessItIsFixed) {
+  request_.model = std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml";
+  request_.assignments = {"effects.friction.coulomb_N=150"};
+  const auto lacking = [&] {
+    std::vector<std::string> names;
+    for (const auto& effect : prepare(request_).problem.candidate_effects) {
+      if (effect.name != "friction") continue;
+      for (const auto& p : effect.parameters) names.emplace_back(p.name);
+    }
+    return names;
+  };
+  EXPECT_EQ(lacking().front(), "static_N");
+  request_.selection.fix = {"friction.coulomb_N"};
+  EXPECT_EQ(lacking().size(), 7U);
+  request_.selection.fix = {"friction.static_N", "friction.stribeck_mps"};
+  EXPECT_EQ(lacking().front(), "presliding_stiffness_N_per_m");
+  request_.selection.fix = {"friction"};
+  EXPECT_TRUE(lacking().empty());
+  request_.selection.fix.clear();
+  request_.without = {"friction"};
+  EXPECT_TRUE(lacking().empty());
+  request_.without.clear();
+  request_.selection.free = {"mass_kg", "friction"};
+  EXPECT_TRUE(lacking().empty()) << "all of it is fitted as the model's own";
+}
+
 TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
   request_.ignored = {"1-2"};
   expect_refused(2, "is not a span");

@@ -79,6 +79,15 @@ TEST(EffectWords, ACurveIsItsRange) {
   EXPECT_EQ(effect_words(d, "force_over_y"), "force_over_y: 3 values from -72 to 47.5");
 }
 
+TEST(EffectWords, OfAnEffectThatTheModelHasAreWhatItLacks) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.parameters = {{"friction.coulomb_N", 20.0, 0.1, false},
+                  {"friction.static_N", 30.0, 0.1, false}};
+  d.parameters.front().in_model = true;
+  EXPECT_EQ(effect_words(d, "friction"), "friction beyond the model's own: static 30.00 +- 0.10 N");
+}
+
 TEST(AdviceWords, AServoIsAskedForItsSpeedAndNotForASpool) {
   const std::vector<selection::Localisation> where{{"flow", "y", 0.99}};
   const std::string words = words_for_unexplained(where, "velocity_servo");

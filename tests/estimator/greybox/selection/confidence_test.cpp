@@ -44,6 +44,18 @@ TEST(Confidence, AWavelengthMakesNoAmplitudeWithinItsErrorSure) {
   EXPECT_THAT(named(d), ElementsAre("encoder_eccentricity within_error"));
 }
 
+TEST(Confidence, AnEffectOfTheModelIsSureByAnyOfItsRefinements) {
+  Diagnosis d = unexplained();
+  d.missing = {"friction"};
+  d.parameters = {{"friction.coulomb_N", 150.0, 4.0, false},
+                  {"friction.static_N", 10.0, 40.0, false},
+                  {"friction.presliding_stiffness_N_per_m", 1e7, 9e6, false}};
+  d.parameters.front().in_model = true;
+  EXPECT_THAT(named(d), ElementsAre("friction within_error")) << "its Coulomb part is known";
+  d.parameters.back().std_error = 1e5;
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, AnUnsteadyGainIsNotEstablishedWhereAnErrorRemains) {
   Diagnosis d = unexplained();
   d.rms_before_m = 5e-3;

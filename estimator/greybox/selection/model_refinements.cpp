@@ -1,0 +1,98 @@
+#include "estimator/greybox/selection/model_refinements.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "estimator/greybox/dataset_simulation.h"
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/search_round.h"
+#include "estimator/greybox/selection/trial_sizes.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Error over the noise from which on a fit may have ended beside the truth.
+constexpr double kFar = 1.5;
+
+bool refines_model(const SearchContext& context, const std::string& effect) {
+  const plant_sim::EffectInfo* known = plant_sim::find_effect(effect);
+  return known != nullptr && has_effect(context.problem.model, *known);
+}
+
+/// The file's values, and that of the trial sizes which leaves least beside them. `own`: the
+/// parameters of the refinement.
+ParameterSubset best_beside_file(const SearchContext& context, const ModelStage& stage,
+                                 const std::vector<FreeParameter>& own) {
+  const VectorXd file = with_file_values(context, stage);
+  ParameterSubset best{stage.fitted.parameters, {}};
+  best.parameters.insert(best.parameters.end(), own.begin(), own.end());
+  const MatrixXd sizes = trial_sizes(own, context.problem.data, kTrialSizes);
+  DatasetSimulation run(context.problem.model, context.problem.data, best.parameters);
+  double least_m = std::numeric_limits<double>::infinity();
+  for (Index from = 0; from < sizes.cols(); from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, sizes.cols() - from);
+    MatrixXd points(file.size() + sizes.rows(), lanes);
+    points << file.replicate(1, lanes), sizes.middleCols(from, lanes);
+    MatrixXd residuals_m;
+    run.residuals(points, residuals_m);
+    for (Index lane = 0; lane < lanes; ++lane) {
+      const double left_m = rms(residuals_m.col(lane), context.problem.data.training_mask);
+      if (!(left_m < least_m)) continue;
+      least_m = left_m;
+      best.start = points.col(lane);
+    }
+  }
+  return best;
+}
+
+/// Those that are begun with together, then each of the others.
+std::vector<std::vector<FreeParameter>> parts_of(const plant_sim::EffectInfo& refinements) {
+  std::map<int, std::vector<FreeParameter>> parts;
+  for (const FreeParameter& p : effect_parameters(refinements, kEveryRefinement)) {
+    if (p.instead_of == 0) parts[p.refinement > kFirstRefinements ? p.refinement : 0].push_back(p);
+  }
+  std::vector<std::vector<FreeParameter>> found;
+  for (auto& [number, own] : parts) found.push_back(std::move(own));
+  return found;
+}
+
+FitSummary best_fit(const SearchContext& context, const ModelStage& stage,
+                    const Candidate& candidate) {
+  FitSummary best = candidate.fitted;
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    if (effect.name != candidate.effects.front()) continue;
+    for (const std::vector<FreeParameter>& own : parts_of(effect)) {
+      const ParameterSubset start = best_beside_file(context, stage, own);
+      if (start.start.size() == 0 || context.cancelled()) continue;
+      FitSummary other =
+          refit(context, start, context.problem.data.training_mask, wide(context.options.threads));
+      revive(context, other);
+      if (other.training_rms_m < best.training_rms_m) best = std::move(other);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void refit_model_refinements(const SearchContext& context, const ModelStage& stage,
+                             std::vector<Candidate>& candidates) {
+  if (!(stage.fitted.validation_rms_m > kFar * context.problem.data.noise_floor_m)) return;
+  for (Candidate& candidate : candidates) {
+    if (!candidate.fitted_at_all || !refines_model(context, candidate.effects.front())) continue;
+    FitSummary fitted = best_fit(context, stage, candidate);
+    if (context.cancelled() || !(fitted.training_rms_m < candidate.fitted.training_rms_m)) continue;
+    candidate.fitted = std::move(fitted);
+    candidate.validation_rms_m = candidate.fitted.validation_rms_m;
+    candidate.p_value = chance(context, stage.fitted, candidate.fitted);
+  }
+}
+
+}  // namespace estimator::greybox::selection
