@@ -147,6 +147,15 @@ std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
                   {stage.fitted.theta, stage.fitted.residual_m}, parameters, own, finer);
 }
 
+/// The stage's parameters, then a wave's near the length that it has.
+ParameterSubset start_at(const plant_sim::EffectInfo& effect, const ModelStage& stage,
+                         const std::vector<FreeParameter>& own, const Wave& wave) {
+  ParameterSubset start{stage.fitted.parameters, stage.fitted.theta};
+  append(start, {own, wave.own});
+  hold_wavelength(effect, wave.own, std::span(start.parameters).last(own.size()));
+  return start;
+}
+
 /// A resonance and how well it explains the stage's residual.
 struct ScoredResonance {
   double cost = 0.0;
@@ -230,16 +239,11 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
   std::vector<FreeParameter> parameters = stage.fitted.parameters;
   const std::vector<FreeParameter> own = effect_parameters(effect, kFirstRefinements);
   parameters.insert(parameters.end(), own.begin(), own.end());
-  const auto own_size = static_cast<Index>(own.size());
   std::vector<ScoredStart> starts;
   if (is_periodic(own)) {
     std::vector<Wave> found = scanned(context, stage, projection, parameters, own);
     if (!found.empty()) {
-      VectorXd start(stage.fitted.theta.size() + own_size);
-      start << stage.fitted.theta, found.front().own;
-      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.parameters.size());
-      hold_wavelength(effect, found.front().own, {parameters.begin() + first, parameters.end()});
-      starts.push_back({found.front().cost, {parameters, std::move(start)}});
+      starts.push_back({found.front().cost, start_at(effect, stage, own, found.front())});
     }
   } else if (is_resonant(own)) {
     starts = resonance_starts(context, stage, projection, parameters, own);
@@ -295,6 +299,19 @@ std::vector<ScreeningResult> screen(const SearchContext& context, const ModelSta
                      return a.expected_ratio < b.expected_ratio;
                    });
   return screened;
+}
+
+ParameterSubset start_of_wave(const SearchContext& context, const ModelStage& stage,
+                              const plant_sim::EffectInfo& effect, double wavelength_m) {
+  const std::vector<FreeParameter> own = effect_parameters(effect, kFirstRefinements);
+  std::vector<FreeParameter> parameters = stage.fitted.parameters;
+  parameters.insert(parameters.end(), own.begin(), own.end());
+  const Projection projection(stage.fitted, context.problem.data.training_mask);
+  const double turns = turns_of(context.problem.data, wavelength_m);
+  const std::vector<Wave> found =
+      waves_at(context, context.problem.data, projection,
+               {stage.fitted.theta, stage.fitted.residual_m}, parameters, own, {turns});
+  return found.empty() ? ParameterSubset{} : start_at(effect, stage, own, found.front());
 }
 
 RefinedCandidate refine(const SearchContext& context, const ScreeningResult& screened,

@@ -48,6 +48,12 @@ struct ScreeningResult {
     const std::vector<plant_sim::EffectInfo>& effects,
     const std::function<void(const std::string&)>& on_screened = {});
 
+/// The stage's parameters, then those of a periodic effect at that wavelength, its size and phase
+/// by their linear estimate; empty where it cannot be simulated.
+[[nodiscard]] ParameterSubset start_of_wave(const SearchContext& context, const ModelStage& stage,
+                                            const plant_sim::EffectInfo& effect,
+                                            double wavelength_m);
+
 struct RefinedCandidate {
   std::string effect;
   FitSummary fitted;

@@ -13,6 +13,7 @@
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/innovation_trials.h"
+#include "estimator/greybox/selection/joined_waves.h"
 #include "estimator/greybox/selection/pair_search.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
@@ -313,6 +314,7 @@ void extend_search(const SearchContext& context, SearchStart& start) {
   start.branch = search_forward(context, halves, start.first, std::move(start.branch));
   try_alternative_starts(context, halves, start.first, start.branch);
   substitute_idle_effects(context, start.branch);
+  join_waves(context, start.branch.stage);
 }
 
 void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,

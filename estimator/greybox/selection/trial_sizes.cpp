@@ -76,6 +76,8 @@ PositionRange span_of(const FitDataset& data) {
   return span;
 }
 
+double range_of(const PositionRange& span) { return std::max(span.most_m - span.least_m, 1e-6); }
+
 /// All parameters at their typical sizes, rest positions in the middle of the motion.
 VectorXd typical_point(const std::vector<FreeParameter>& parameters, const PositionRange& span) {
   VectorXd point = VectorXd::Ones(static_cast<Index>(parameters.size()));
@@ -153,9 +155,12 @@ std::vector<double> turns_over(const FitDataset& /*evidence*/) {
   return turns;
 }
 
+double turns_of(const FitDataset& data, double wavelength_m) {
+  return range_of(span_of(data)) / wavelength_m;
+}
+
 MatrixXd waves(const std::vector<FreeParameter>& parameters, const FitDataset& data, double turns) {
   const PositionRange span = span_of(data);
-  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
   const Index wavelength = index_of(parameters, ".wavelength_m");
   const Index phase = index_of(parameters, ".phase_rad");
   const FreeParameter& length = parameters[static_cast<std::size_t>(wavelength)];
@@ -165,7 +170,7 @@ MatrixXd waves(const std::vector<FreeParameter>& parameters, const FitDataset& d
     points.col(quarter) = typical_point(parameters, span);
     points(0, quarter) *= kSmallSize;
     points(wavelength, quarter) =
-        std::clamp(length.to_theta(range_m / turns), length.lower, length.upper);
+        std::clamp(length.to_theta(range_of(span) / turns), length.lower, length.upper);
     points(phase, quarter) = angle.to_theta(kHalfPi * static_cast<double>(quarter));
   }
   return points;

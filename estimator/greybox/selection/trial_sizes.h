@@ -23,6 +23,8 @@ namespace estimator::greybox::selection {
 [[nodiscard]] bool is_periodic(const std::vector<FreeParameter>& parameters);
 /// Wave numbers of a periodic effect that the motion can resolve, in turns over the motion.
 [[nodiscard]] std::vector<double> turns_over(const FitDataset& data);
+/// Turns of a periodic effect of that wavelength over the motion.
+[[nodiscard]] double turns_of(const FitDataset& data, double wavelength_m);
 /// A small periodic effect with `turns` over the motion, at phase 0 and a quarter later: two
 /// columns whose linear combinations are the effect with any size and phase.
 [[nodiscard]] Eigen::MatrixXd waves(const std::vector<FreeParameter>& parameters,

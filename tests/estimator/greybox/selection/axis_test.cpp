@@ -15,6 +15,7 @@
 #include "estimator/greybox/selection/noise_credibility.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "plant_sim/model_file.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -214,6 +215,24 @@ TEST(AxisRipple, TakesItsSecondHarmonicBeforeAnotherEffect) {
   EXPECT_NEAR(*better.value("force_ripple.amplitude_N"), 12.0, 0.1);
   EXPECT_NEAR(*better.value("force_ripple.second_sin_N"), 3.0, 0.1);
   EXPECT_NEAR(*better.value("force_ripple.second_cos_N"), -2.0, 0.1);
+}
+
+// Of a ripple at the noise the first round shows a shorter wave, and an encoder's makes up for it.
+TEST(AxisRipple, IsOneWhereTwoWavesExplainAsMuch) {
+  const truth::Record truth = truth::simulate(
+      truth::parse_case("rig=linear_axis,motion=triangle,length_s=20,"
+                        "force_ripple.amplitude_N=0.006,force_ripple.wavelength_m=0.02",
+                        8));
+  const SearchContext context{
+      make_problem(plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                         "/config/models/force_driven_axis.toml"),
+                   fit_dataset({diagnose_test::dataset_of(truth)}, {})),
+      {}};
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_THAT(d.missing, ElementsAre("force_ripple"));
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("force_ripple.wavelength_m"), 0.02, 4e-4);
+  EXPECT_NEAR(*better.value("force_ripple.amplitude_N"), 0.006, 6e-4);
 }
 
 TEST(AxisRipple, IsAmplifiedWhereTheRandomPartIsNextToNothing) {

@@ -1,0 +1,62 @@
+#include "estimator/greybox/selection/joined_waves.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/structure_search.h"
+#include "estimator/greybox/selection/trial_sizes.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+const plant_sim::EffectInfo* candidate(const SearchContext& context, const std::string& effect) {
+  const auto& all = context.problem.candidate_effects;
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == effect; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+bool is_wave(const SearchContext& context, const std::string& effect) {
+  const plant_sim::EffectInfo* info = candidate(context, effect);
+  return info != nullptr && is_periodic(effect_parameters(*info, kFirstRefinements));
+}
+
+/// The stage with `kept` at the wavelength of `other`, without this one; none where that leaves
+/// more.
+std::optional<ModelStage> joined(const SearchContext& context, const ModelStage& stage,
+                                 const std::string& kept, const std::string& other) {
+  const SimulationWidth width = wide(context.options.threads);
+  ModelStage rest{stage.added, {}};
+  std::erase(rest.added, other);
+  const ParameterSubset base = subset(stage.fitted, [&](const FreeParameter& p) {
+    return !belongs_to(p, kept) && !belongs_to(p, other);
+  });
+  rest.fitted = refit(context, base, context.problem.data.training_mask, width);
+  const ParameterSubset start = start_of_wave(context, rest, *candidate(context, kept),
+                                              stage.fitted.value(other + ".wavelength_m"));
+  if (start.parameters.empty() || context.cancelled()) return {};
+  const double most_m =
+      (1.0 + worthwhile_at(context, stage.fitted.validation_rms_m)) * stage.fitted.validation_rms_m;
+  rest.fitted = refit_if_hopeful(context, start, most_m, width);
+  if (context.cancelled() || !(rest.fitted.validation_rms_m < most_m)) return {};
+  return rest;
+}
+
+}  // namespace
+
+void join_waves(const SearchContext& context, ModelStage& stage) {
+  const std::vector<std::string> added = stage.added;
+  for (const std::string& kept : added) {
+    for (const std::string& other : added) {
+      if (kept == other || !is_wave(context, kept) || !is_wave(context, other)) continue;
+      if (std::optional<ModelStage> one = joined(context, stage, kept, other)) {
+        stage = std::move(*one);
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace estimator::greybox::selection
