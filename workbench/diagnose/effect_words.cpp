@@ -65,11 +65,8 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
   const std::string curve = curve_words(diagnosis, effect);
   if (!curve.empty()) return effect + curve;
   std::string text;
-  bool has_more = false;
   for (const selection::ParameterValue& p : diagnosis.parameters) {
-    if (p.name.rfind(effect + ".", 0) != 0) continue;
-    has_more = has_more || p.in_model;
-    if (p.in_model) continue;
+    if (p.in_model || p.name.rfind(effect + ".", 0) != 0) continue;
     // a value without an error is one that the record does not show, or stands at its bound
     const bool unseen = std::isnan(p.std_error) && !p.at_bound;
     if (!text.empty() && (unseen || p.std_error > kMostError * std::abs(p.value))) continue;
@@ -77,7 +74,9 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");
   }
-  return effect + (has_more ? " beyond the model's own" : "") + text;
+  const bool in_file = std::find(diagnosis.in_file.begin(), diagnosis.in_file.end(), effect) !=
+                       diagnosis.in_file.end();
+  return effect + (in_file ? " beyond the model's own" : "") + text;
 }
 
 std::string effects_words(const selection::Diagnosis& diagnosis,

@@ -1,5 +1,6 @@
 #include "workbench/diagnose/diagnosis_report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
@@ -46,6 +47,17 @@ ordered_json parameters_of(const selection::Diagnosis& d) {
                    {"at_bound", p.at_bound}};
   }
   return all;
+}
+
+/// What is missing of effects that the file has.
+ordered_json refined_of(const selection::Diagnosis& d) {
+  ordered_json list = ordered_json::array();
+  for (const std::string& effect : d.missing) {
+    if (std::find(d.in_file.begin(), d.in_file.end(), effect) != d.in_file.end()) {
+      list.push_back(effect);
+    }
+  }
+  return list;
 }
 
 ordered_json held_scale_of(const DiagnosisReport& outcome) {
@@ -155,6 +167,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   ordered_json json;
   json["verdict"] = selection::to_string(d.verdict);
   json["missing"] = d.established();
+  json["refined"] = refined_of(d);
   json["may_be"] = ordered_json::array();
   for (const selection::PossibleEffect& one : d.possible) {
     json["may_be"].push_back({{"effect", one.effect}, {"why", selection::to_string(one.why)}});

@@ -227,7 +227,7 @@ Section parameters_section(const DiagnosisReport& outcome) {
   for (const selection::ParameterValue& p : d.parameters) {
     const config::units::Quantity q = config::units::quantity(p.name, p.value, p.std_error);
     const double* before = file.value(p.name);
-    const bool added = was_added(d, p.name);
+    const bool added = was_added(d, p);
     const bool known = before != nullptr && !added;
     const std::string in_file =
         known ? config::units::quantity(p.name, *before, std::nan(""), p.value).value : "";

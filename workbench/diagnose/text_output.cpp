@@ -126,7 +126,7 @@ void print_parameters(const DiagnosisReport& outcome, std::ostream& out) {
   for (const selection::ParameterValue& p : d.parameters) width = std::max(width, p.name.size());
   out << "\nparameters of the better model\n";
   for (const selection::ParameterValue& p : d.parameters) {
-    const double* before = was_added(d, p.name) ? nullptr : file.value(p.name);
+    const double* before = was_added(d, p) ? nullptr : file.value(p.name);
     std::string value = config::units::words(config::units::quantity(p.name, p.value, p.std_error));
     out << "  " << padded(p.name, width) << "  ";
     if (before != nullptr) {

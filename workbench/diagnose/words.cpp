@@ -120,10 +120,10 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
 
 std::string file_name(const std::string& file) { return file.substr(file.find_last_of('/') + 1); }
 
-bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter) {
+bool was_added(const selection::Diagnosis& diagnosis, const selection::ParameterValue& parameter) {
   const std::vector<std::string>& names = diagnosis.missing;
-  return std::find(names.begin(), names.end(), parameter.substr(0, parameter.find('.'))) !=
-         names.end();
+  const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
+  return !parameter.in_model && std::find(names.begin(), names.end(), effect) != names.end();
 }
 
 /// Parameters that the record has moved far from what the file says of them.
@@ -133,7 +133,7 @@ void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>&
   for (const selection::ParameterValue& p : d.parameters) {
     const bool own = p.name.find('.') == std::string::npos;
     if (own && p.at_bound && p.value != 0.0) at_bound.push_back(p.name);
-    if (std::abs(p.prior_sds) >= kFar_sds && !was_added(d, p.name)) far.push_back(&p);
+    if (std::abs(p.prior_sds) >= kFar_sds && !was_added(d, p)) far.push_back(&p);
   }
   const auto side = [](const selection::ParameterValue* p) {
     return p->prior_sds > 0.0 ? "above" : "below";

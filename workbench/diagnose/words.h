@@ -33,6 +33,7 @@ struct StepWords {
 [[nodiscard]] std::string file_name(const std::string& file);
 
 /// True when a parameter belongs to an effect that was found missing.
-[[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
+[[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis,
+                             const selection::ParameterValue& parameter);
 
 }  // namespace workbench::diagnose

@@ -89,6 +89,7 @@ bool earned(const SearchContext& context, CrossValidation& halves, const ModelSt
 
 void drop_refinements(const SearchContext& context, CrossValidation& halves, ModelStage& stage) {
   drop_idle_refinements(stage.added, stage.fitted);
+  drop_empty_effects(stage.added, stage.fitted);
   std::vector<Refinement> remaining = refinements_of(stage);
   while (!remaining.empty() && !context.cancelled()) {
     std::vector<ParameterSubset> plain;
@@ -104,6 +105,7 @@ void drop_refinements(const SearchContext& context, CrossValidation& halves, Mod
     }
     if (i == remaining.size() || context.cancelled()) return;
     stage.fitted = refit_to_convergence(context, without[i]);
+    drop_empty_effects(stage.added, stage.fitted);
     remaining.erase(remaining.begin(), remaining.begin() + static_cast<std::ptrdiff_t>(i) + 1);
   }
 }

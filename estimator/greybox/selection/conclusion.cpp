@@ -119,6 +119,7 @@ Diagnosis begun(const Diagnosis& result) {
   Diagnosis begun;
   begun.noise_floor_m = result.noise_floor_m;
   begun.floor_assumed = result.floor_assumed;
+  begun.in_file = result.in_file;
   begun.excitation = result.excitation;
   begun.searched_s = result.searched_s;
   begun.command_lead_samples = result.command_lead_samples;
@@ -208,8 +209,11 @@ bool is_disputed(const SearchContext& search, const InnovationSearch& innovation
          });
 }
 
-/// True for an effect of size zero that has no refinement to act by.
+/// True for an effect without parameters, or of size zero and without a refinement to act by.
 bool is_nothing(const FitSummary& fitted, const std::string& effect) {
+  const bool is_empty = std::none_of(fitted.parameters.begin(), fitted.parameters.end(),
+                                     [&](const auto& p) { return belongs_to(p, effect); });
+  if (is_empty) return true;
   return is_idle(fitted, effect) &&
          std::none_of(fitted.parameters.begin(), fitted.parameters.end(),
                       [&](const auto& p) { return belongs_to(p, effect) && p.refinement > 0; });

@@ -153,6 +153,15 @@ bool shares_unit(const ParameterValue& one, const ParameterValue& other) {
   return one.name == other.name || (!unit.empty() && config::units::unit_of(other.name) == unit);
 }
 
+bool has(const std::vector<std::string>& effects, const std::string& effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+/// True for a parameter that came in with the effect; the model file may have others of it.
+bool is_of_added(const std::string& effect, const ParameterValue& p) {
+  return !p.in_model && p.name.rfind(effect + ".", 0) == 0;
+}
+
 /// True for a refinement of an effect. Every parameter of a formula counts as one: a curve has
 /// several values of one unit, of which the first may well be zero.
 bool is_refinement(const std::string& effect, const ParameterValue& p) {
@@ -167,19 +176,16 @@ bool is_refinement(const std::string& effect, const ParameterValue& p) {
 /// refinement in its unit may be clear: friction at rest, of which a record cannot tell how far it
 /// falls while it slides. Of an effect that the model has, any refinement may be what is missing.
 std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
-  const auto of_effect = [&](const ParameterValue& p) {
-    return p.name.rfind(effect + ".", 0) == 0;
-  };
-  const auto is_own = [&](const ParameterValue& p) { return of_effect(p) && !p.in_model; };
+  const auto is_own = [&](const ParameterValue& p) { return is_of_added(effect, p); };
   const double least = least_standard_errors(diagnosis);
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
+  const bool in_file = has(diagnosis.in_file, effect);
+  if (size == diagnosis.parameters.end() && in_file) return Doubt::within_error;
   if (size == diagnosis.parameters.end() || is_clear_of_error(*size, least)) return {};
-  const bool has_more = std::any_of(diagnosis.parameters.begin(), diagnosis.parameters.end(),
-                                    [&](const auto& p) { return of_effect(p) && p.in_model; });
   const bool refined = (size->value == 0.0 || !size->at_bound) &&
                        std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
                          return is_own(p) && is_refinement(effect, p) &&
-                                (has_more || shares_unit(*size, p)) && is_clear_of_error(p, least);
+                                (in_file || shares_unit(*size, p)) && is_clear_of_error(p, least);
                        });
   if (refined) return {};
   return size->at_bound ? Doubt::at_bound : Doubt::within_error;
@@ -188,16 +194,12 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
 /// True where a number of an effect in the unit of its size is at the greatest that it can be:
 /// friction that holds 30 times what the rig can push stands for something else.
 bool is_beyond_sense(const Diagnosis& diagnosis, const std::string& effect) {
-  const auto is_own = [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; };
+  const auto is_own = [&](const ParameterValue& p) { return is_of_added(effect, p); };
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
   if (size == diagnosis.parameters.end()) return false;
   return std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
     return is_own(p) && shares_unit(*size, p) && p.at_bound && p.value != 0.0;
   });
-}
-
-bool has(const std::vector<std::string>& effects, const std::string& effect) {
-  return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
 struct Chance {

@@ -53,9 +53,12 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
     return false;
   }
   changed.verdict = Verdict::changing;
-  // an effect that changes is named with its change
+  // an effect that changes is named with its change; what the file lacks of it is another matter
+  const auto in_file = [&](const std::string& name) {
+    return std::find(changed.in_file.begin(), changed.in_file.end(), name) != changed.in_file.end();
+  };
   std::erase_if(changed.missing, [&](const std::string& name) {
-    return is_change(name) || changes_effect(found.changes, name);
+    return is_change(name) || (!in_file(name) && changes_effect(found.changes, name));
   });
   changed.changing = found.changes;
   take_final_errors(changed);

@@ -327,6 +327,7 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
                         std::make_shared<ScreeningMemo>()};
   Diagnosis result;
   result.effects_only = problem.effects_only;
+  result.in_file = names_of(lacking_refinements(problem.model));
   result.floor_assumed = !std::isfinite(problem.data.noise_floor_m);
   assume_noise_floor(context.problem.data);
   result.noise_floor_m = context.problem.data.noise_floor_m;

@@ -57,6 +57,8 @@ struct SelectionStep {
 struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   std::vector<std::string> missing;  ///< in the order added, laws with them
+  /// Effects that the model file has without some refinement: among `missing` it is that.
+  std::vector<std::string> in_file;
   /// The laws among `missing`: learned, undetermined, or near to what an unexplained record lacks.
   std::vector<Law> laws;
   std::vector<PossibleEffect> possible;             ///< those of `missing` that are not established

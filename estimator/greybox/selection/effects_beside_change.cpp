@@ -56,7 +56,9 @@ std::optional<ModelStage> effects_beside(const ModelStage& first, const ChangeSe
   // the change is the plant's as long as effects are sought
   SearchContext context = change.context;
   std::erase_if(context.problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
-    return changes_effect(change.changes, effect.name);
+    return std::any_of(effect.parameters.begin(), effect.parameters.end(), [&](const auto& p) {
+      return changes_parameter(change.changes, effect.name + "." + p.name);
+    });
   });
   ModelStage base = alone.final.model;
   base.added.clear();

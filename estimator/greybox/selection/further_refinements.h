@@ -11,7 +11,10 @@
 
 namespace estimator::greybox::selection {
 
-/// The parameters of each such refinement of a candidate effect that a fit lacks.
+/// The parameters of each such refinement of an effect that a fit lacks.
+[[nodiscard]] std::vector<std::vector<FreeParameter>> further_refinements(
+    const plant_sim::EffectInfo& effect, const FitSummary& fitted);
+/// The same of a candidate effect by its name.
 [[nodiscard]] std::vector<std::vector<FreeParameter>> further_refinements(
     const SearchContext& context, const FitSummary& fitted, const std::string& effect);
 
@@ -20,7 +23,7 @@ namespace estimator::greybox::selection {
 [[nodiscard]] ParameterSubset refined(const FitSummary& fitted,
                                       const std::vector<FreeParameter>& refinement);
 
-/// Takes those of a stage's effects that gain at least `evidence_nats`.
+/// The refinements of a stage's effects that gain at least `evidence_nats` become part of it.
 void take_further_refinements(const SearchContext& plain, double evidence_nats,
                               InnovationStage& stage);
 

@@ -39,6 +39,11 @@ struct ParameterChange {
 /// ratio and does not count.
 [[nodiscard]] bool is_clear_of_errors(const ParameterChange& change);
 
+[[nodiscard]] inline bool changes_parameter(const std::vector<ParameterChange>& changes,
+                                            const std::string& name) {
+  return std::any_of(changes.begin(), changes.end(),
+                     [&](const ParameterChange& change) { return change.parameter == name; });
+}
 /// True where a parameter of the effect is among those that change.
 [[nodiscard]] inline bool changes_effect(const std::vector<ParameterChange>& changes,
                                          const std::string& effect) {

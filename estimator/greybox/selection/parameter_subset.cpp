@@ -142,8 +142,8 @@ void drop_idle_refinements(const std::vector<std::string>& added, FitSummary& fi
   std::vector<Index> kept;
   for (Index i = 0; i < count; ++i) {
     const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
-    bool idle =
-        p.refinement > 0 && std::find(added.begin(), added.end(), effect_of(p)) != added.end();
+    bool idle = p.refinement > 0 && !p.in_model &&
+                std::find(added.begin(), added.end(), effect_of(p)) != added.end();
     for (Index k = 0; idle && k < count; ++k) {
       const FreeParameter& other = fitted.parameters[static_cast<std::size_t>(k)];
       const bool together = other.refinement == p.refinement && effect_of(other) == effect_of(p);
@@ -162,6 +162,13 @@ void drop_idle_refinements(const std::vector<std::string>& added, FitSummary& fi
   rest.theta = fitted.theta(kept);
   rest.jacobian = Eigen::MatrixXd(fitted.jacobian(Eigen::all, kept));
   fitted = std::move(rest);
+}
+
+void drop_empty_effects(std::vector<std::string>& added, const FitSummary& fitted) {
+  std::erase_if(added, [&](const std::string& effect) {
+    return std::none_of(fitted.parameters.begin(), fitted.parameters.end(),
+                        [&](const FreeParameter& p) { return belongs_to(p, effect); });
+  });
 }
 
 }  // namespace estimator::greybox::selection

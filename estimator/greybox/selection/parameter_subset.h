@@ -64,12 +64,15 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 /// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
-/// True when the effect's size, its first parameter, is zero. A refinement of an effect that the
-/// model has is none.
+/// True when the effect's size, its first parameter, is zero. What is sought as a refinement alone
+/// has no size.
 [[nodiscard]] bool is_idle(const FitSummary& fitted, const std::string& effect);
 /// Removes refinements of added effects that change nothing: at their neutral value, or without
 /// influence.
 void drop_idle_refinements(const std::vector<std::string>& added, FitSummary& fitted);
+/// Removes effects of which no parameter is left: refinements of an effect of the file that were
+/// dropped one after another.
+void drop_empty_effects(std::vector<std::string>& added, const FitSummary& fitted);
 /// Takes a fit from a start of revived_refinements() where it is better.
 void revive(const SearchContext& context, FitSummary& fitted);
 

@@ -31,6 +31,13 @@ std::vector<EffectInfo> absent_effects(const ModelFile& model) {
   return absent;
 }
 
+std::vector<std::string> names_of(const std::vector<EffectInfo>& effects) {
+  std::vector<std::string> names;
+  names.reserve(effects.size());
+  for (const EffectInfo& effect : effects) names.push_back(effect.name);
+  return names;
+}
+
 std::vector<EffectInfo> lacking_refinements(const ModelFile& model) {
   std::vector<EffectInfo> found;
   for (EffectInfo effect : plant_sim::effect_library()) {

@@ -79,6 +79,8 @@ struct SearchContext {
 /// Effects offered by the plant that are absent from the model, or neutral in it.
 [[nodiscard]] std::vector<plant_sim::EffectInfo> absent_effects(const plant_sim::ModelFile& model);
 
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects);
+
 /// Refinements that effects of the model lack, as an effect of the same name that has nothing else.
 [[nodiscard]] std::vector<plant_sim::EffectInfo> lacking_refinements(
     const plant_sim::ModelFile& model);

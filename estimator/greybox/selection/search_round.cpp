@@ -278,7 +278,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });
-  refit_model_refinements(context, stage, round.candidates);
+  if (!explained && stage.added.empty()) refit_model_refinements(context, stage, round.candidates);
   refine_best(context, stage, round.candidates);
   return round;
 }

@@ -28,13 +28,6 @@ constexpr std::size_t kRivalLaws = 4;
 /// Gain of a curve from which on laws are worth their fits.
 constexpr double kMuchMotion_nats = 5.0 * kCurve_nats;
 
-std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects) {
-  std::vector<std::string> names;
-  names.reserve(effects.size());
-  for (const plant_sim::EffectInfo& effect : effects) names.push_back(effect.name);
-  return names;
-}
-
 /// True where a parameter of the plant, or an effect, ends at its bound: it makes up for what is
 /// missing.
 bool is_strained(const ModelStage& held, std::size_t plant_parameters) {

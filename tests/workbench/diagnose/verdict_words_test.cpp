@@ -5,6 +5,7 @@
 #include "tests/workbench/diagnose/example_outcome.h"
 #include "workbench/diagnose/advice_words.h"
 #include "workbench/diagnose/effect_words.h"
+#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
 
@@ -85,6 +86,13 @@ TEST(EffectWords, OfAnEffectThatTheModelHasAreWhatItLacks) {
   d.parameters = {{"friction.coulomb_N", 20.0, 0.1, false},
                   {"friction.static_N", 30.0, 0.1, false}};
   d.parameters.front().in_model = true;
+  d.in_file = {"friction"};
+  EXPECT_EQ(effect_words(d, "friction"), "friction beyond the model's own: static 30.00 +- 0.10 N");
+  d.missing = {"friction"};
+  EXPECT_FALSE(was_added(d, d.parameters.front())) << "it was 20 N in the file";
+  EXPECT_TRUE(was_added(d, d.parameters.back()));
+  // with --fix friction.coulomb_N it is no parameter of the fit
+  d.parameters.erase(d.parameters.begin());
   EXPECT_EQ(effect_words(d, "friction"), "friction beyond the model's own: static 30.00 +- 0.10 N");
 }
 

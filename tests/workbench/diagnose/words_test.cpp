@@ -64,7 +64,7 @@ TEST(Words, APredictionShowsWhatASimulationUnderDisturbanceHides) {
 TEST(Words, APriorOfAnEffectThatWasAddedIsNoValueOfTheFile) {
   ExampleReport outcome;
   selection::ParameterValue& friction = outcome.diagnosis.parameters.back();
-  ASSERT_TRUE(was_added(outcome.diagnosis, friction.name));
+  ASSERT_TRUE(was_added(outcome.diagnosis, friction));
   friction.prior_sds = 3.0;
   EXPECT_THAT(remarks(outcome), Not(Contains(HasSubstr("standard deviations of its prior"))));
 }

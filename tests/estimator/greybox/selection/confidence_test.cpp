@@ -51,6 +51,7 @@ TEST(Confidence, AnEffectOfTheModelIsSureByAnyOfItsRefinements) {
                   {"friction.static_N", 10.0, 40.0, false},
                   {"friction.presliding_stiffness_N_per_m", 1e7, 9e6, false}};
   d.parameters.front().in_model = true;
+  d.in_file = {"friction"};
   EXPECT_THAT(named(d), ElementsAre("friction within_error")) << "its Coulomb part is known";
   d.parameters.back().std_error = 1e5;
   EXPECT_THAT(named(d), IsEmpty());

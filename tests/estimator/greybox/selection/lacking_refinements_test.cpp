@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/record/record.h"
+#include "estimator/greybox/dataset_simulation.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/problem.h"
@@ -86,6 +87,30 @@ TEST(LackingRefinements, OfAFrictionThatSticksAreFound) {
   EXPECT_NEAR(*d.better.value("friction.coulomb_N"), 20.0, 0.05);
   EXPECT_NEAR(*d.better.value("friction.static_N"), 30.0, 0.05);
   EXPECT_NEAR(*d.better.value("friction.stribeck_mps"), 0.01, 1e-4);
+}
+
+// Static friction that the file has and the rig has not: the fit brings it to nothing, and the
+// better model keeps that.
+TEST(LackingRefinements, AreFoundBesideOnesThatTheRigLacks) {
+  const truth::Record truth = truth::simulate(
+      truth::parse_case("rig=linear_axis,length_s=20,motion=multisine,friction.coulomb_N=20,"
+                        "friction.presliding_stiffness_N_per_m=1e6",
+                        90020));
+  const FitDataset data = fit_dataset({dataset_of(truth)}, {});
+  Diagnosis d = diagnose(make_problem(axis_with({{"friction.coulomb_N", 20.0},
+                                                 {"friction.static_N", 30.0},
+                                                 {"friction.stribeck_mps", 0.01}}),
+                                      data),
+                         {});
+  EXPECT_THAT(d.missing, ElementsAre("friction"));
+  EXPECT_THAT(d.in_file, ElementsAre("friction"));
+  EXPECT_NEAR(*d.better.value("friction.presliding_stiffness_N_per_m"), 1e6, 5e3);
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+  DatasetSimulation run(d.better, data, {});
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::VectorXd(0), residuals_m);
+  EXPECT_LT(rms(residuals_m.col(0), data.validation_mask), 1.1 * d.noise_floor_m)
+      << "the model that is written";
 }
 
 TEST(LackingRefinements, AreNotFoundWhereTheFileHasAllThatActs) {

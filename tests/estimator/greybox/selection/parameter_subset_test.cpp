@@ -48,6 +48,27 @@ TEST(IdleRefinements, AreDroppedFromAddedEffectsAlone) {
   EXPECT_EQ(fitted.jacobian.cols(), 1);
 }
 
+TEST(IdleRefinements, OfTheFileStayWhereTheEffectIsSoughtToo) {
+  FitSummary fitted;
+  fitted.parameters.resize(2);
+  fitted.parameters[0].name = "friction.static_N";
+  fitted.parameters[0].refinement = 1;
+  fitted.parameters[0].in_model = true;
+  fitted.parameters[1].name = "friction.presliding_stiffness_N_per_m";
+  fitted.parameters[1].refinement = 2;
+  fitted.theta = Eigen::Vector2d(0.0, 1.0);
+  fitted.at_bound = {-1, 0};
+  fitted.jacobian = Eigen::MatrixXd::Ones(3, 2);
+  drop_idle_refinements({"friction"}, fitted);
+  EXPECT_EQ(fitted.parameters.size(), 2U) << "the file's value would come back";
+  std::vector<std::string> added{"friction", "backlash"};
+  drop_empty_effects(added, fitted);
+  EXPECT_EQ(added, std::vector<std::string>{"friction"});
+  fitted.parameters.pop_back();
+  drop_empty_effects(added, fitted);
+  EXPECT_TRUE(added.empty()) << "what is left of it is the file's";
+}
+
 /// A friction that turns gradually, over a width of which 0.05 is the least.
 FitSummary gradual_friction(double width) {
   FitSummary fitted;
