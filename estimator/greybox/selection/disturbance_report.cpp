@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/greybox/disturbance/simulated_lines.h"
+#include "estimator/greybox/disturbance/simulated_noise.h"
 #include "estimator/residual/distributions.h"
 
 namespace estimator::greybox::selection {
@@ -26,6 +27,28 @@ struct RecordDisturbance {
   double lines_m2 = 0.0;  ///< together; they may break friction loose that each alone does not
 };
 
+bool has_dry_friction(const plant_sim::ModelFile& model) {
+  const auto& effects = plant_sim::effect_library();
+  return std::any_of(effects.begin(), effects.end(), [&](const plant_sim::EffectInfo& effect) {
+    return std::find(effect.sites.begin(), effect.sites.end(), "dry_friction") !=
+               effect.sites.end() &&
+           has_effect(model, effect);
+  });
+}
+
+/// Mean square (m2) of what the random force, or speed, causes beside dry friction, which holds
+/// much of it; none without friction.
+std::optional<double> rubbed_m2(const InnovationStage& stage, std::size_t r) {
+  const FitSummary& fitted = stage.model.fitted;
+  const plant_sim::ModelFile& file = stage.context.problem.model;
+  const disturbance::NoiseParameters& noise = stage.noise.noise;
+  if (!(noise.disturbance_sd > 0.0) || !has_dry_friction(with_values(file, fitted))) return {};
+  const double rms_m = disturbance::simulated_disturbance_rms_m(
+      file, stage.context.problem.data.records[r], fitted.parameters, fitted.theta, noise,
+      stage.noise.force_place);
+  return rms_m * rms_m;
+}
+
 RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   const Dataset& record = stage.context.problem.data.records[r];
   RecordDisturbance result;
@@ -37,6 +60,9 @@ RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   disturbance::NoiseParameters walk = stage.noise.noise;
   walk.disturbance_sd = 0.0;
   result.walk_m2 = caused_m2(walk);
+  if (const std::optional<double> rubbed = rubbed_m2(stage, r)) {
+    result.random_m2 = result.walk_m2 + *rubbed;
+  }
   std::vector<Eigen::Vector2d> waves;
   for (std::size_t i = 0; i < stage.noise.waves.size(); ++i) {
     waves.push_back(stage.noise.waves[i][r]);
