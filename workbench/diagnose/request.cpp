@@ -111,6 +111,7 @@ void keep_fixed(const std::string& name, plant_sim::EffectInfo& refinements) {
   std::erase_if(refinements.parameters, [&](const plant_sim::ParameterInfo& p) {
     return dot == std::string::npos || name.substr(dot + 1) == p.name;
   });
+  selection::give_size(refinements);
 }
 
 /// Refuses to keep what the model does not have: the sizes of such effects are what is sought.

@@ -32,7 +32,7 @@ struct StepWords {
 /// The path without its folders.
 [[nodiscard]] std::string file_name(const std::string& file);
 
-/// True when a parameter belongs to an effect that was found missing.
+/// True for a parameter of what was found missing; of an effect that the file has, what it lacks.
 [[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis,
                              const selection::ParameterValue& parameter);
 

@@ -1,4 +1,4 @@
-// Simulated effect of a random disturbance: friction and play let less of it through than the model
+// Simulated effect of a random disturbance: dry friction lets less of it through than the model
 // linearised about its trajectory does.
 #pragma once
 

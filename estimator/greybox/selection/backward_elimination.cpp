@@ -51,12 +51,16 @@ void drop_effects(const SearchContext& context, ModelStage& stage) {
   }
 }
 
-/// Refinements of an effect that are in the search, the last first.
+/// Refinements of an effect that are in the search, the last first; none where one is all of it.
 std::set<int, std::greater<>> refinements_of(const FitSummary& fitted, const std::string& effect) {
   std::set<int, std::greater<>> refinements;
+  bool has_size = false;
   for (const FreeParameter& p : fitted.parameters) {
-    if (belongs_to(p, effect) && p.refinement > 0) refinements.insert(p.refinement);
+    if (!belongs_to(p, effect)) continue;
+    if (p.refinement > 0) refinements.insert(p.refinement);
+    has_size = has_size || p.refinement == 0;
   }
+  if (!has_size && refinements.size() == 1) refinements.clear();
   return refinements;
 }
 

@@ -6,6 +6,7 @@
 #include "estimator/greybox/disturbance/simulated_lines.h"
 #include "estimator/greybox/disturbance/simulated_noise.h"
 #include "estimator/residual/distributions.h"
+#include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
 namespace {

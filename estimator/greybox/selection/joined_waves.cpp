@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"
@@ -34,9 +36,10 @@ std::optional<ModelStage> joined(const SearchContext& context, const ModelStage&
     return !belongs_to(p, kept) && !belongs_to(p, other);
   });
   rest.fitted = refit(context, base, context.problem.data.training_mask, width);
+  if (context.cancelled() || rest.fitted.jacobian.size() == 0) return {};
   const ParameterSubset start = start_of_wave(context, rest, *candidate(context, kept),
                                               stage.fitted.value(other + ".wavelength_m"));
-  if (start.parameters.empty() || context.cancelled()) return {};
+  if (start.parameters.empty()) return {};
   const double most_m =
       (1.0 + worthwhile_at(context, stage.fitted.validation_rms_m)) * stage.fitted.validation_rms_m;
   rest.fitted = refit_if_hopeful(context, start, most_m, width);
@@ -47,16 +50,17 @@ std::optional<ModelStage> joined(const SearchContext& context, const ModelStage&
 }  // namespace
 
 void join_waves(const SearchContext& context, ModelStage& stage) {
-  const std::vector<std::string> added = stage.added;
-  for (const std::string& kept : added) {
-    for (const std::string& other : added) {
+  std::optional<ModelStage> best;
+  for (const std::string& kept : stage.added) {
+    for (const std::string& other : stage.added) {
       if (kept == other || !is_wave(context, kept) || !is_wave(context, other)) continue;
-      if (std::optional<ModelStage> one = joined(context, stage, kept, other)) {
-        stage = std::move(*one);
-        return;
+      std::optional<ModelStage> one = joined(context, stage, kept, other);
+      if (one && (!best || one->fitted.validation_rms_m < best->fitted.validation_rms_m)) {
+        best = std::move(one);
       }
     }
   }
+  if (best) stage = *std::move(best);
 }
 
 }  // namespace estimator::greybox::selection

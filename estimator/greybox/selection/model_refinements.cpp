@@ -69,8 +69,9 @@ FitSummary best_fit(const SearchContext& context, const ModelStage& stage,
     if (effect.name != candidate.effects.front()) continue;
     for (const std::vector<FreeParameter>& own : parts_of(effect)) {
       for (const VectorXd& base : {with_file_values(context, stage), stage.fitted.theta}) {
+        if (own.empty() || context.cancelled()) continue;
         const ParameterSubset start = best_beside(context, stage, base, own);
-        if (start.start.size() == 0 || context.cancelled()) continue;
+        if (start.start.size() == 0) continue;
         FitSummary other = refit(context, start, context.problem.data.training_mask,
                                  wide(context.options.threads));
         revive(context, other);
@@ -87,6 +88,7 @@ void refit_model_refinements(const SearchContext& context, const ModelStage& sta
                              std::vector<Candidate>& candidates) {
   if (!(stage.fitted.validation_rms_m > kMayBeBeside * context.problem.data.noise_floor_m)) return;
   for (Candidate& candidate : candidates) {
+    if (context.cancelled()) return;
     if (!candidate.fitted_at_all || !refines_model(context, candidate.effects.front())) continue;
     FitSummary fitted = best_fit(context, stage, candidate);
     if (context.cancelled() || !(fitted.training_rms_m < candidate.fitted.training_rms_m)) continue;

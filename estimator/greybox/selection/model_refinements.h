@@ -8,9 +8,10 @@
 
 namespace estimator::greybox::selection {
 
-/// Fits those of a round's candidates that refine an effect of the model from further starts, and
-/// keeps what leaves less: from the file's values and the stage's, with the size that leaves least
-/// beside them, and where a refinement has no influence, as static friction below the sliding one.
+/// Fits those of a first round's candidates that refine an effect of the model from further starts,
+/// and keeps what leaves less: from the file's values and the stage's, with the size that leaves
+/// least beside them, and where a refinement has no influence, as static friction below the sliding
+/// one.
 void refit_model_refinements(const SearchContext& context, const ModelStage& stage,
                              std::vector<Candidate>& candidates);
 

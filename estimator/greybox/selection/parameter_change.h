@@ -44,6 +44,7 @@ struct ParameterChange {
   return std::any_of(changes.begin(), changes.end(),
                      [&](const ParameterChange& change) { return change.parameter == name; });
 }
+
 /// True where a parameter of the effect is among those that change.
 [[nodiscard]] inline bool changes_effect(const std::vector<ParameterChange>& changes,
                                          const std::string& effect) {

@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/parameter_subset.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -38,6 +38,17 @@ std::vector<std::string> names_of(const std::vector<EffectInfo>& effects) {
   return names;
 }
 
+void give_size(EffectInfo& refinements) {
+  const auto first = std::min_element(
+      refinements.parameters.begin(), refinements.parameters.end(),
+      [](const ParameterInfo& a, const ParameterInfo& b) { return a.refinement < b.refinement; });
+  if (first == refinements.parameters.end() || first->refinement <= kFirstRefinements) return;
+  const int number = first->refinement;
+  for (ParameterInfo& p : refinements.parameters) {
+    if (p.refinement == number) p.refinement = 0;
+  }
+}
+
 std::vector<EffectInfo> lacking_refinements(const ModelFile& model) {
   std::vector<EffectInfo> found;
   for (EffectInfo effect : plant_sim::effect_library()) {
@@ -51,15 +62,7 @@ std::vector<EffectInfo> lacking_refinements(const ModelFile& model) {
              (p.instead_of > 0 && given.count(p.instead_of) != 0);
     });
     if (effect.parameters.empty()) continue;
-    const auto by_number = [](const ParameterInfo& a, const ParameterInfo& b) {
-      return a.refinement < b.refinement;
-    };
-    const int first =
-        std::min_element(effect.parameters.begin(), effect.parameters.end(), by_number)->refinement;
-    // what no search starts with is sought as the effect's own size where nothing else is left
-    for (ParameterInfo& p : effect.parameters) {
-      if (first > kFirstRefinements && p.refinement == first) p.refinement = 0;
-    }
+    give_size(effect);
     found.push_back(std::move(effect));
   }
   return found;

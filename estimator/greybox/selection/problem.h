@@ -79,6 +79,9 @@ struct SearchContext {
 /// Effects offered by the plant that are absent from the model, or neutral in it.
 [[nodiscard]] std::vector<plant_sim::EffectInfo> absent_effects(const plant_sim::ModelFile& model);
 
+/// Makes the first refinement the effect's own size where no search would start with any.
+void give_size(plant_sim::EffectInfo& refinements);
+
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<plant_sim::EffectInfo>& effects);
 
 /// Refinements that effects of the model lack, as an effect of the same name that has nothing else.

@@ -214,7 +214,7 @@ std::vector<ScoredStart> resonance_starts(const SearchContext& context, const Mo
   std::vector<ScoredStart> starts;
   const std::vector<ScoredResonance> peaks =
       resonance_peaks(context, stage, projection, parameters, own);
-  const auto start_at = [&](const ScoredResonance& peak, double share) {
+  const auto begin_at = [&](const ScoredResonance& peak, double share) {
     const Resonance found = resonance_of(own, peak.frequency_Hz, share, context.problem.data);
     ParameterSubset start{stage.fitted.parameters, stage.fitted.theta};
     append(start, {found.parameters, found.theta});
@@ -223,11 +223,11 @@ std::vector<ScoredStart> resonance_starts(const SearchContext& context, const Mo
   bool both_sides = false;
   for (const ScoredResonance& peak : peaks) {
     if (starts.size() == kFollowedPeaks) break;
-    start_at(peak, peak.share);
+    begin_at(peak, peak.share);
     both_sides = both_sides || std::signbit(peak.share) != std::signbit(peaks.front().share);
   }
   if (!peaks.empty() && !both_sides)
-    start_at(peaks.front(), peaks.front().share > 0.0 ? -1.0 : kUsualSwing);
+    begin_at(peaks.front(), peaks.front().share > 0.0 ? -1.0 : kUsualSwing);
   return starts;
 }
 

@@ -44,6 +44,7 @@ TEST_F(DiagnoseCommand, FindsTheOffsetAndWritesJsonModelAndReport) {
             0);
   const json j = json_of(file("d.json"));
   EXPECT_THAT(j["missing"].get<std::vector<std::string>>(), ElementsAre("null_bias")) << text_;
+  EXPECT_TRUE(j["refined"].empty()) << "the file has no part of it";
   const json& offset = j["parameters"]["null_bias.offset_V"];
   EXPECT_NEAR(offset["value"].get<double>(), 0.04, kErrors * offset["std_error"].get<double>());
   EXPECT_LT(j["rms_after_m"].get<double>(), 0.1 * j["rms_before_m"].get<double>());

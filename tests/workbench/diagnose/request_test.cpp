@@ -125,6 +125,12 @@ TEST_F(DiagnoseRequest, WhatTheModelLacksOfAnEffectIsSoughtUnlessItIsFixed) {
   EXPECT_EQ(lacking().size(), 7U);
   request_.selection.fix = {"friction.static_N", "friction.stribeck_mps"};
   EXPECT_THAT(lacking(), AllOf(SizeIs(5), Not(Contains("static_N"))));
+  request_.selection.fix = {"friction.static_N", "friction.stribeck_mps",
+                            "friction.presliding_stiffness_N_per_m",
+                            "friction.presliding_damping_N_s_per_m"};
+  EXPECT_THAT(lacking(), Contains("direction_ratio"));
+  const plant_sim::EffectInfo sought = prepare(request_).problem.candidate_effects.back();
+  EXPECT_FALSE(greybox::effect_parameters(sought, 0).empty()) << "a search begins with a size";
   request_.selection.fix = {"friction"};
   EXPECT_TRUE(lacking().empty());
   request_.selection.fix.clear();
