@@ -195,7 +195,7 @@ struct Friction {
   static constexpr double kFiner = 2.0;               ///< the curve bends within a transition
   static constexpr double kTransitions = 4.0;         ///< tanh beyond has a slope under 0.2 %
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
-  static constexpr double kTurnMargin = 2.0;          ///< of the speed's change within a step
+  static constexpr double kTurnMargin = 2.0;          ///< changes of the speed in a step
   static constexpr double kTurnLengths = 0.002;       ///< way within a part, in lengths of yielding
   static constexpr double kStribeckReach = 3.0;       ///< the exponential beyond is 1e-4
   static constexpr double kOfStribeck = 0.1;          ///< change of the speed within a part

@@ -100,7 +100,7 @@ struct ContactLevels {
   S holding_N = 0.0;       ///< a rigid contact holds so much at rest, whichever way it is pushed
   S braking_N = 0.0;       ///< a rigid contact brakes with no more
   S gradual_N = 0.0;       ///< a contact that turns its sign gradually rubs with no more
-  S spring_N_per_m = 0.0;  ///< of a contact that yields before it slides
+  S spring_N_per_m = 0.0;  ///< a contact yields so before it slides
 };
 
 /// A step within which a dry friction may turn.

@@ -74,14 +74,23 @@ TEST(TruthFriction, DampsItsBristlesLessTheFasterItSlides) {
   }
 }
 
-TEST(TruthFriction, StaysOnBristlesStifferThanItsSteps) {
+Plant undamped_plant() {
   Plant plant;
   plant.damping_N_s_per_m = 0.0;
+  return plant;
+}
+
+/// Bristles of 1e8 N/m without damping.
+Hidden stiff_bristles(double coulomb_N) {
   Hidden hidden;
-  hidden.coulomb_N = 2.0;
+  hidden.coulomb_N = coulomb_N;
   hidden.presliding_N_per_m = 1e8;
   hidden.bristle_N_s_per_m = 0.0;
-  const Actuator actuator(plant, hidden, LeftOut{});
+  return hidden;
+}
+
+TEST(TruthFriction, StaysOnBristlesStifferThanItsSteps) {
+  const Actuator actuator(undamped_plant(), stiff_bristles(2.0), LeftOut{});
   // at 0.2 m/s the bristles follow within 0.1 us, a hundredth of the step
   State x = actuator.rest(kCentre_m);
   x[1] = 0.2;
@@ -90,12 +99,8 @@ TEST(TruthFriction, StaysOnBristlesStifferThanItsSteps) {
 }
 
 TEST(TruthFriction, TakesFourForcesPerStiffnessFromEachSwingOfTheRod) {
-  Plant plant;
-  plant.damping_N_s_per_m = 0.0;
-  Hidden hidden;
-  hidden.coulomb_N = 40.0;
-  hidden.presliding_N_per_m = 1e8;
-  hidden.bristle_N_s_per_m = 0.0;
+  const Plant plant = undamped_plant();
+  const Hidden hidden = stiff_bristles(40.0);
   Rig rig(std::make_unique<Actuator>(plant, hidden, LeftOut{}), 2000);
   rig.x[1] = 0.2;
   double peak_m = 0.0;

@@ -29,7 +29,7 @@ struct Hidden {
   double bristle_N_s_per_m = 700.0;  ///< s1, which the product does not know
   double direction_ratio = 0.0;
   double transition_mps = 0.0;  ///< above 0: a smooth contact in place of the bristle
-  double damping_speed_mps = std::numeric_limits<double>::infinity();  ///< of the bristles
+  double damping_speed_mps = std::numeric_limits<double>::infinity();  ///< s1 fades over it
   double quadratic_N_s2_per_m2 = 0.0;
   double spring_N_per_m = 0.0;
   double rest_m = 0.305;

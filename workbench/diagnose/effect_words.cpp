@@ -74,9 +74,7 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");
   }
-  const bool in_file = std::find(diagnosis.in_file.begin(), diagnosis.in_file.end(), effect) !=
-                       diagnosis.in_file.end();
-  return effect + (in_file ? " beyond the model's own" : "") + text;
+  return effect + (diagnosis.is_in_file(effect) ? " beyond the model's own" : "") + text;
 }
 
 std::string effects_words(const selection::Diagnosis& diagnosis,

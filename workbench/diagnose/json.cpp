@@ -1,6 +1,5 @@
 #include "workbench/diagnose/diagnosis_report.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
@@ -49,13 +48,11 @@ ordered_json parameters_of(const selection::Diagnosis& d) {
   return all;
 }
 
-/// What is missing of effects that the file has.
+/// Effects that the file has, of which something is missing.
 ordered_json refined_of(const selection::Diagnosis& d) {
   ordered_json list = ordered_json::array();
   for (const std::string& effect : d.missing) {
-    if (std::find(d.in_file.begin(), d.in_file.end(), effect) != d.in_file.end()) {
-      list.push_back(effect);
-    }
+    if (d.is_in_file(effect)) list.push_back(effect);
   }
   return list;
 }

@@ -105,7 +105,7 @@ void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::Effe
   }
 }
 
-/// What is fixed of an effect that the model has is not sought either.
+/// Parameters of an effect that the model has are not sought where they are fixed.
 void keep_fixed(const std::string& name, plant_sim::EffectInfo& refinements) {
   const std::size_t dot = name.find('.');
   std::erase_if(refinements.parameters, [&](const plant_sim::ParameterInfo& p) {

@@ -179,7 +179,7 @@ std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string
   const auto is_own = [&](const ParameterValue& p) { return is_of_added(effect, p); };
   const double least = least_standard_errors(diagnosis);
   const auto size = std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(), is_own);
-  const bool in_file = has(diagnosis.in_file, effect);
+  const bool in_file = diagnosis.is_in_file(effect);
   if (size == diagnosis.parameters.end() && in_file) return Doubt::within_error;
   if (size == diagnosis.parameters.end() || is_clear_of_error(*size, least)) return {};
   const bool refined = (size->value == 0.0 || !size->at_bound) &&

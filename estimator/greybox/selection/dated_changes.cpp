@@ -55,12 +55,12 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   changed.verdict = Verdict::changing;
   // an effect that changes is named with its change; what the file lacks of it is another matter
   const auto is_lacking = [&](const std::string& name) {
-    return std::any_of(changed.parameters.begin(), changed.parameters.end(),
+    return changed.is_in_file(name) &&
+           std::any_of(changed.parameters.begin(), changed.parameters.end(),
                        [&](const ParameterValue& p) {
                          return !p.in_model && p.name.starts_with(name + ".") &&
                                 !changes_parameter(found.changes, p.name);
-                       }) &&
-           std::find(changed.in_file.begin(), changed.in_file.end(), name) != changed.in_file.end();
+                       });
   };
   std::erase_if(changed.missing, [&](const std::string& name) {
     return is_change(name) || (!is_lacking(name) && changes_effect(found.changes, name));

@@ -1,6 +1,7 @@
 // Result of a diagnosis and the search that led to it.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <optional>
@@ -115,6 +116,10 @@ struct Diagnosis {
   [[nodiscard]] bool has_coarse_step_beside(double error_m) const {
     constexpr double kCoarse_ratio = 0.5;
     return !loses_motion && step_error_m > kCoarse_ratio * error_m;
+  }
+  /// True where the model file has the effect without some refinement.
+  [[nodiscard]] bool is_in_file(const std::string& effect) const {
+    return std::find(in_file.begin(), in_file.end(), effect) != in_file.end();
   }
   /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;

@@ -1,6 +1,6 @@
-// Refinements that no search starts with: friction that differs by direction, the second harmonic
-// of a ripple. They are tried beside an effect that was taken, before another effect stands in for
-// them.
+// A search starts without some refinements, such as a ripple's second harmonic or friction that
+// differs by direction. They are tried beside an effect that was taken, before another one stands
+// in for them.
 #pragma once
 
 #include <string>
