@@ -26,7 +26,7 @@ State Axis::rate(const State& x, double asked_V, double t_s) const {
   double load_N = resisting_N(x[0], v_mps, t_s);
   if (hidden.coulomb_N > 0.0) {
     r[6] = bristle_rate_mps(z_m, v_mps);
-    load_N += hidden.presliding_N_per_m * z_m + hidden.bristle_N_s_per_m * r[6];
+    load_N += friction_N(z_m, v_mps, r[6]);
   }
   if (hidden.lag_s > 0.0) r[4] = (u_V - x[4]) / hidden.lag_s;
   const double drive_N = plant.gain_N_per_V * (hidden.lag_s > 0.0 ? x[4] : u_V);

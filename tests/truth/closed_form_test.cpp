@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "tests/truth/actuator.h"
+#include "tests/truth/axis.h"
 #include "tests/truth/rig.h"
+#include "tests/truth/rod.h"
 
 namespace truth {
 namespace {
@@ -43,22 +45,53 @@ TEST(TruthActuator, MovesAtTheSteadySpeedOfItsOrifices) {
 
 TEST(TruthActuator, ExtendsOnAPositiveCommand) { EXPECT_GT(settled({}, 0.5).x[0], 0.306); }
 
+struct Maker {
+  const char* name;
+  double mass_kg;
+  std::function<std::unique_ptr<Machine>(const Hidden&)> make;
+};
+
+std::vector<Maker> makers() {
+  return {{"actuator", Plant{}.mass_kg,
+           [](const Hidden& h) { return std::make_unique<Actuator>(Plant{}, h, LeftOut{}); }},
+          {"axis", AxisPlant{}.mass_kg,
+           [](const Hidden& h) { return std::make_unique<Axis>(AxisPlant{}, h, LeftOut{}); }},
+          {"single rod", RodPlant{}.mass_kg,
+           [](const Hidden& h) { return std::make_unique<Rod>(RodPlant{}, h, LeftOut{}); }}};
+}
+
+State moving(const Machine& machine, double v_mps, double z_m) {
+  State x = machine.rest(kCentre_m);
+  x[1] = v_mps;
+  x[6] = z_m;
+  return x;
+}
+
+/// What friction takes from the acceleration at a speed, with the bristles bent by z_m, in N.
+double friction_N(const Maker& maker, const Hidden& hidden, double v_mps, double z_m) {
+  const auto rubbing = maker.make(hidden);
+  const auto smooth = maker.make({});
+  return maker.mass_kg * (smooth->rate(moving(*smooth, v_mps, 0.0), 0.0, 0.0)[1] -
+                          rubbing->rate(moving(*rubbing, v_mps, z_m), 0.0, 0.0)[1]);
+}
+
 TEST(TruthFriction, SlidesSteadilyAtTheLevelOfStribecksCurve) {
   Hidden hidden;
   hidden.coulomb_N = 150.0;
   hidden.static_N = 190.0;
   hidden.stribeck_mps = 0.015;
-  for (const double v_mps : {0.003, 0.015, 0.1, -0.015}) {
-    Actuator actuator(Plant{}, hidden, LeftOut{});
-    double z_m = 0.0;  // Heun on the bristle alone, at constant speed
-    for (int i = 0; i < 400000; ++i) {
-      State x = actuator.rest(kCentre_m);
-      x[1] = v_mps;
-      x[6] = z_m;
-      z_m += 1e-6 * actuator.rate(x, 0.0, 0.0)[6];
+  for (const Maker& maker : makers()) {
+    const auto machine = maker.make(hidden);
+    for (const double v_mps : {0.003, 0.015, 0.1, -0.015}) {
+      double z_m = 0.0;  // Euler on the bristle alone, at constant speed
+      for (int i = 0; i < 400000; ++i) {
+        z_m += 1e-6 * machine->rate(moving(*machine, v_mps, z_m), 0.0, 0.0)[6];
+      }
+      const double level_N = 150.0 + 40.0 * std::exp(-std::pow(v_mps / 0.015, 2));
+      EXPECT_NEAR(friction_N(maker, hidden, v_mps, z_m), std::copysign(level_N, v_mps),
+                  1e-3 * level_N)
+          << maker.name;
     }
-    const double level_N = 150.0 + 40.0 * std::exp(-std::pow(v_mps / 0.015, 2));
-    EXPECT_NEAR(actuator.friction_N(z_m, v_mps), std::copysign(level_N, v_mps), 1e-3 * level_N);
   }
 }
 
@@ -67,10 +100,13 @@ TEST(TruthFriction, DampsItsBristlesLessTheFasterItSlides) {
   hidden.coulomb_N = 150.0;
   hidden.bristle_N_s_per_m = 700.0;
   hidden.damping_speed_mps = 0.01;
-  const Actuator actuator(Plant{}, hidden, LeftOut{});
-  for (const double v_mps : {-0.02, 0.005, 0.02}) {
-    const double ratio = v_mps / 0.01;
-    EXPECT_NEAR(actuator.friction_N(0.0, v_mps), 700.0 * v_mps * std::exp(-ratio * ratio), 1e-9);
+  for (const Maker& maker : makers()) {
+    for (const double v_mps : {-0.02, 0.005, 0.02}) {
+      const double ratio = v_mps / 0.01;
+      EXPECT_NEAR(friction_N(maker, hidden, v_mps, 0.0), 700.0 * v_mps * std::exp(-ratio * ratio),
+                  1e-6)
+          << maker.name;
+    }
   }
 }
 

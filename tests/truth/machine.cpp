@@ -29,11 +29,10 @@ double Machine::bristle_rate_mps(double z_m, double v_mps) const {
   return v_mps - hidden.presliding_N_per_m * std::abs(v_mps) * z_m / level_N;
 }
 
-double Machine::friction_N(double z_m, double v_mps) const {
-  if (hidden.coulomb_N <= 0.0) return 0.0;
+double Machine::friction_N(double z_m, double v_mps, double bristle_mps) const {
   const double fast = v_mps / hidden.damping_speed_mps;
   return hidden.presliding_N_per_m * z_m +
-         hidden.bristle_N_s_per_m * std::exp(-fast * fast) * bristle_rate_mps(z_m, v_mps);
+         hidden.bristle_N_s_per_m * std::exp(-fast * fast) * bristle_mps;
 }
 
 double Machine::resisting_N(double y_m, double v_mps, double t_s) const {
@@ -73,20 +72,16 @@ double Machine::drawn_m3ps(double k, double supply_Pa, double port_Pa) const {
   return std::sqrt(half * half + k * k * drop_Pa) - half;
 }
 
-int Machine::parts(const State& x, double step_s) const {
-  if (hidden.coulomb_N <= 0.0 || hidden.transition_mps > 0.0) return 1;
+void Machine::settle_bristles(State& x, double step_s) const {
+  if (hidden.coulomb_N <= 0.0 || hidden.transition_mps > 0.0) return;
   const double v_mps = x[1];
-  const double rate_per_s =
-      hidden.presliding_N_per_m * std::abs(v_mps) / sliding_level_N(hidden, v_mps);
-  return rate_per_s * step_s > kStable ? static_cast<int>(std::ceil(rate_per_s * step_s)) : 1;
+  const double level_N = sliding_level_N(hidden, v_mps);
+  const double rate_per_s = hidden.presliding_N_per_m * std::abs(v_mps) / level_N;
+  if (rate_per_s * step_s > kStable) x[6] = sign(v_mps) * level_N / hidden.presliding_N_per_m;
 }
 
 void Machine::step(State& x, double u_V, double t_s, double step_s) const {
-  const int count = parts(x, step_s);
-  for (int i = 0; i < count; ++i) part_step(x, u_V, t_s + step_s * i / count, step_s / count);
-}
-
-void Machine::part_step(State& x, double u_V, double t_s, double step_s) const {
+  settle_bristles(x, step_s);
   const State first = rate(x, u_V, t_s);
   State ahead{};
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + step_s * first[i];

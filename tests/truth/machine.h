@@ -40,10 +40,10 @@ class Machine {
   /// Supply pressure at the valve: what the flow drawn leaves of it.
   [[nodiscard]] virtual double inlet_Pa(const State&, double) const { return 0.0; }
 
-  /// One step of Heun's method; in parts where stiff bristles at a low level need them.
+  /// One step of Heun's method.
   void step(State& x, double u_V, double t_s, double step_s) const;
-  /// Force of the bristles.
-  [[nodiscard]] double friction_N(double z_m, double v_mps) const;
+  /// Force of bristles that give at `bristle_mps`.
+  [[nodiscard]] double friction_N(double z_m, double v_mps, double bristle_mps) const;
 
   Hidden hidden;
   LeftOut left_out;
@@ -52,8 +52,8 @@ class Machine {
   double outside_Pa = 0.0;
 
  private:
-  [[nodiscard]] int parts(const State& x, double step_s) const;
-  void part_step(State& x, double u_V, double t_s, double step_s) const;
+  /// Bends bristles that follow the speed within less than a step as far as they then do.
+  void settle_bristles(State& x, double step_s) const;
 
  protected:
   /// Keeps the state where it can be after a step.

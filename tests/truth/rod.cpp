@@ -43,7 +43,7 @@ State Rod::rate(const State& x, double u_V, double t_s) const {
   State r{};
   if (hidden.coulomb_N > 0.0) {
     r[6] = bristle_rate_mps(z_m, v_mps);
-    force_N -= hidden.presliding_N_per_m * z_m + hidden.bristle_N_s_per_m * r[6];
+    force_N -= friction_N(z_m, v_mps, r[6]);
   }
   const double wv = plant.valve_natural_frequency_rad_per_s;
   r[0] = v_mps;
