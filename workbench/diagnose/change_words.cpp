@@ -8,6 +8,7 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/free_parameter.h"
+#include "workbench/diagnose/effect_words.h"
 
 namespace workbench::diagnose {
 
@@ -68,11 +69,10 @@ std::string step_name(const std::string& added) {
 namespace {
 
 std::string beside_changes(const selection::Diagnosis& d) {
-  using config::schema::listed;
   if (d.missing.empty()) return "no effect of the library explains the record, but ";
   const std::vector<std::string> established = d.established();
-  if (established.empty()) return listed(d.missing) + " may be missing, and ";
-  return listed(established) + (established.size() > 1 ? " are" : " is") + " missing, and ";
+  if (established.empty()) return names_words(d, d.missing) + " may be missing, and ";
+  return names_words(d, established) + (established.size() > 1 ? " are" : " is") + " missing, and ";
 }
 
 }  // namespace

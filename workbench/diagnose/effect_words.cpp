@@ -60,6 +60,17 @@ std::string curve_words(const selection::Diagnosis& diagnosis, const std::string
 
 }  // namespace
 
+std::string name_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
+  return effect + (diagnosis.is_in_file(effect) ? " beyond the model's own" : "");
+}
+
+std::string names_words(const selection::Diagnosis& diagnosis,
+                        const std::vector<std::string>& effects) {
+  std::vector<std::string> names;
+  for (const std::string& effect : effects) names.push_back(name_words(diagnosis, effect));
+  return config::schema::listed(names);
+}
+
 std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
   if (effect == "second_mass") return effect + second_mass_words(diagnosis);
   const std::string curve = curve_words(diagnosis, effect);
@@ -74,7 +85,7 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");
   }
-  return effect + (diagnosis.is_in_file(effect) ? " beyond the model's own" : "") + text;
+  return name_words(diagnosis, effect) + text;
 }
 
 std::string effects_words(const selection::Diagnosis& diagnosis,

@@ -10,6 +10,14 @@ namespace workbench::diagnose {
 
 namespace selection = estimator::greybox::selection;
 
+/// "friction", of an effect that the model has "friction beyond the model's own".
+[[nodiscard]] std::string name_words(const selection::Diagnosis& diagnosis,
+                                     const std::string& effect);
+
+/// "friction beyond the model's own and backlash".
+[[nodiscard]] std::string names_words(const selection::Diagnosis& diagnosis,
+                                      const std::vector<std::string>& effects);
+
 /// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model; of an
 /// effect that the model has, "friction beyond the model's own: static 181 +- 4 N".
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,

@@ -1,7 +1,7 @@
 #include "workbench/diagnose/error_words.h"
 
-#include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "workbench/diagnose/effect_words.h"
 
 namespace workbench::diagnose {
 
@@ -18,8 +18,8 @@ std::string prediction_words(const selection::Diagnosis& d) {
   if (d.missing.empty() || !d.changing.empty() || !d.prediction) return "";
   return " One sample ahead, predictions are off by " +
          config::units::length_words(d.prediction->before_m) + " without and by " +
-         config::units::length_words(d.prediction->after_m) + " with " +
-         config::schema::listed(d.missing) + ".";
+         config::units::length_words(d.prediction->after_m) + " with " + names_words(d, d.missing) +
+         ".";
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::string fall_words(const selection::Diagnosis& d) {
            config::units::length_words(d.rms_before_m) + ".";
   }
   const std::string with = d.verdict == selection::Verdict::undetermined
-                               ? "With " + config::schema::listed(d.missing) + ", the"
+                               ? "With " + names_words(d, d.missing) + ", the"
                                : "The";
   const std::string before = config::units::length_words(d.rms_before_m);
   const std::string after = config::units::length_words(d.rms_after_m);

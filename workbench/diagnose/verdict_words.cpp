@@ -95,8 +95,8 @@ std::string unexplained_words(const selection::Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
   if (d.search.interrupted) {
     return "Not decided: " +
-           (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
-           rest + ".";
+           (d.missing.empty() ? "" : "found so far " + names_words(d, d.missing) + "; ") + rest +
+           ".";
   }
   if (d.checks && d.checks->misread()) {
     const auto gain = std::find_if(d.parameters.begin(), d.parameters.end(), [](const auto& one) {
@@ -116,19 +116,18 @@ std::string unexplained_words(const selection::Diagnosis& d) {
                            : "no effect of the library") +
            " explains it." + approximation_words(d);
   }
-  return "Incomplete: " + config::schema::listed(established) +
-         (established.size() > 1 ? " are" : " is") + " missing, but " + rest + "." +
-         approximation_words(d);
+  return "Incomplete: " + names_words(d, established) + (established.size() > 1 ? " are" : " is") +
+         " missing, but " + rest + "." + approximation_words(d);
 }
 
 std::string learned_words(const selection::Diagnosis& d) {
   std::vector<std::string> laws;
   for (const selection::Law& law : d.laws) laws.push_back(law_words(law));
   const std::vector<std::string> beside = d.established();
-  const std::string named = beside.empty() ? ""
-                                           : config::schema::listed(beside) +
-                                                 (beside.size() > 1 ? " are" : " is") +
-                                                 " missing, and beside ";
+  const std::string named =
+      beside.empty()
+          ? ""
+          : names_words(d, beside) + (beside.size() > 1 ? " are" : " is") + " missing, and beside ";
   return "Learned: " + named +
          (beside.empty()      ? ""
           : beside.size() > 1 ? "them "

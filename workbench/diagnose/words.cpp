@@ -85,7 +85,7 @@ std::string possible_words(const selection::Diagnosis& d) {
     auto same = std::find_if(doubts.begin(), doubts.end(),
                              [&](const auto& doubt) { return doubt.first == one.why; });
     if (same == doubts.end()) same = doubts.insert(doubts.end(), {one.why, {}});
-    same->second.push_back(one.effect);
+    same->second.push_back(name_words(d, one.effect));
   }
   const auto text = [](const auto& doubt) {
     return config::schema::listed(doubt.second) + " (" +
@@ -100,8 +100,10 @@ std::string refused_words(const selection::RefusedModel& model, const selection:
       std::all_of(model.effects.begin(), model.effects.end(), [&](const std::string& effect) {
         return std::find(taken.begin(), taken.end(), effect) != taken.end();
       });
+  const auto name = [&](const std::string& effect) { return name_words(d, effect); };
   const std::string what =
-      "Not taken: " + config::schema::joined(model.effects, " + ") + (part ? " alone" : "") +
+      "Not taken: " + config::schema::joined_by(model.effects, name, " + ") +
+      (part ? " alone" : "") +
       (d.by_innovations ? ", which fitted to simulations would leave " : ", which would leave ") +
       config::units::length_words(model.validation_rms_m);
   switch (model.why) {

@@ -96,7 +96,7 @@ void refit(const SearchContext& plain, InnovationStage& stage,
     for (Eigen::VectorXd& start : resized_plays(fitted, stage.model.added, effort))
       others.push_back({{all.parameters, std::move(start)}, 0.0});
   }
-  for (Eigen::VectorXd& start : revived_refinements(fitted))
+  for (Eigen::VectorXd& start : revived_refinements(plain.problem.model, fitted))
     others.push_back({{all.parameters, std::move(start)}, kRevived});
   take_likeliest(others);
   if (other_start && effort == InnovationFit::converged) {

@@ -112,7 +112,7 @@ FitSummary refit_to_convergence(const SearchContext& context, const FitSummary& 
 }
 
 void revive(const SearchContext& context, FitSummary& fitted) {
-  for (const Eigen::VectorXd& start : revived_refinements(fitted)) {
+  for (const Eigen::VectorXd& start : revived_refinements(context.problem.model, fitted)) {
     if (context.cancelled()) return;
     FitSummary other = refit(context, {fitted.parameters, start},
                              context.problem.data.training_mask, wide(context.options.threads));

@@ -1,6 +1,7 @@
 #include "estimator/greybox/selection/revived_refinements.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "config/units/quantity.h"
@@ -10,24 +11,49 @@
 namespace estimator::greybox::selection {
 namespace {
 
-double typical_of(const FreeParameter& parameter) {
-  const plant_sim::EffectInfo* effect = plant_sim::find_effect(effect_of(parameter));
-  if (effect == nullptr) return parameter.unit;
-  for (const plant_sim::ParameterInfo& info : effect->parameters) {
-    if (parameter.name == effect->name + "." + info.name) return info.typical;
+/// The parameter that gives an effect its size: the first of the library.
+struct Size {
+  double value = 0.0;    ///< fitted, or the model's where it is not free
+  double typical = 0.0;  ///< the library's
+  std::string unit;
+};
+
+std::optional<Size> size_of(const plant_sim::ModelFile& model, const plant_sim::EffectInfo& effect,
+                            const FitSummary& fitted) {
+  const plant_sim::ParameterInfo& first = effect.parameters.front();
+  const std::string name = effect.name + "." + first.name;
+  Size size{0.0, first.typical, config::units::unit_of(name)};
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    if (fitted.parameters[i].name != name) continue;
+    size.value = fitted.parameters[i].to_physical(fitted.theta[static_cast<Eigen::Index>(i)]);
+    return size;
   }
-  return parameter.unit;
+  plant_sim::ModelFile copy = model;
+  const double* value = copy.value(name);
+  if (value == nullptr || *value == 0.0) return {};
+  size.value = *value;
+  return size;
 }
 
-/// theta of a parameter in the library's proportion to a size of its effect.
-double in_proportion(const FreeParameter& parameter, const FreeParameter& size, double size_theta) {
-  return parameter.to_theta(size.to_physical(size_theta) / typical_of(size) *
-                            typical_of(parameter));
+/// theta of a parameter in the library's proportion to the size of its effect; none where their
+/// units differ.
+std::optional<double> in_proportion(const plant_sim::ModelFile& model,
+                                    const FreeParameter& parameter, const FitSummary& fitted) {
+  const plant_sim::EffectInfo* effect = plant_sim::find_effect(effect_of(parameter));
+  if (effect == nullptr) return {};
+  const std::optional<Size> size = size_of(model, *effect, fitted);
+  if (!size || config::units::unit_of(parameter.name) != size->unit) return {};
+  for (const plant_sim::ParameterInfo& info : effect->parameters) {
+    if (parameter.name != effect->name + "." + info.name) continue;
+    return parameter.to_theta(size->value / size->typical * info.typical);
+  }
+  return {};
 }
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
+std::vector<Eigen::VectorXd> revived_refinements(const plant_sim::ModelFile& model,
+                                                 const FitSummary& fitted) {
   std::vector<Eigen::VectorXd> starts;
   const std::vector<FreeParameter>& all = fitted.parameters;
   if (fitted.jacobian.cols() != static_cast<Eigen::Index>(all.size())) return starts;
@@ -48,12 +74,8 @@ std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
       bool revive = false;
       for (std::size_t k = first; k < all.size() && !revive; ++k) revive = with_it(k);
       if (!revive) continue;
-      const bool same_unit =
-          config::units::unit_of(all[i].name) == config::units::unit_of(all[first].name);
       const auto at = static_cast<Eigen::Index>(i);
-      const double value = same_unit ? in_proportion(all[i], all[first],
-                                                     fitted.theta[static_cast<Eigen::Index>(first)])
-                                     : share;
+      const double value = in_proportion(model, all[i], fitted).value_or(share);
       start[at] = std::clamp(value, all[i].lower, all[i].upper);
       any = true;
     }

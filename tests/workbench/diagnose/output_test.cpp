@@ -50,6 +50,14 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
     EXPECT_TRUE(j.contains(key));
 }
 
+TEST(DiagnosisJson, RefinedAreTheMissingOnesThatTheFileHas) {
+  ExampleReport outcome;
+  EXPECT_EQ(json::parse(to_json(outcome))["refined"], json::array());
+  outcome.diagnosis.missing = {"backlash", "friction"};
+  outcome.diagnosis.in_file = {"friction", "force_ripple"};
+  EXPECT_EQ(json::parse(to_json(outcome))["refined"], json({"friction"}));
+}
+
 TEST(DiagnosisJson, MissingNumbersAreNull) {
   ExampleReport outcome;
   outcome.diagnosis = {};

@@ -129,6 +129,10 @@ TEST(Words, AnEffectThatWasRefusedMayLowerTheError) {
               testing::Not(HasSubstr("no effect of the library lowers it")));
   EXPECT_THAT(remarks(outcome),
               Contains(AllOf(HasSubstr("Not taken: friction"), HasSubstr("next sample better"))));
+  outcome.diagnosis.in_file = {"friction"};
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("Not taken: friction beyond the model's own, which")));
+  outcome.diagnosis.in_file.clear();
   outcome.diagnosis.disturbance = selection::Disturbance{};
   EXPECT_THAT(remarks(outcome), Contains(HasSubstr("a disturbance explains the samples better")));
   outcome.diagnosis.disturbance.reset();

@@ -12,14 +12,19 @@
 #include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/revived_refinements.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
 namespace {
 
 using diagnose_test::dataset_of;
+using testing::AllOf;
+using testing::Each;
 using testing::ElementsAre;
+using testing::Gt;
 using testing::IsEmpty;
+using testing::Lt;
 
 plant_sim::ModelFile axis_with(const std::vector<std::pair<std::string, double>>& values) {
   plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
@@ -87,6 +92,41 @@ TEST(LackingRefinements, OfAFrictionThatSticksAreFound) {
   EXPECT_NEAR(*d.better.value("friction.coulomb_N"), 20.0, 0.05);
   EXPECT_NEAR(*d.better.value("friction.static_N"), 30.0, 0.05);
   EXPECT_NEAR(*d.better.value("friction.stribeck_mps"), 0.01, 1e-4);
+}
+
+// A fixed size is no parameter of the fit; the proportion is the model's.
+TEST(LackingRefinements, OfAFrictionThatSticksAreFoundBesideAFixedOne) {
+  const truth::Record truth = truth::simulate(
+      truth::parse_case("rig=linear_axis,motion=multisine,length_s=20,friction.coulomb_N=20,"
+                        "friction.static_N=30,friction.stribeck_mps=0.01",
+                        90017));
+  DiagnosisProblem problem =
+      make_problem(axis_with({{"friction.coulomb_N", 20.0}}), fit_dataset({dataset_of(truth)}, {}));
+  std::erase_if(problem.plant_parameters,
+                [](const FreeParameter& p) { return p.name == "friction.coulomb_N"; });
+  Diagnosis d = diagnose(problem, {});
+  EXPECT_THAT(d.missing, ElementsAre("friction"));
+  EXPECT_NEAR(*d.better.value("friction.static_N"), 30.0, 0.05);
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+}
+
+TEST(RevivedRefinements, StartInProportionToASizeThatIsNotFree) {
+  FitSummary fitted;
+  fitted.parameters = effect_parameters(*plant_sim::find_effect("friction"), 1);
+  std::erase_if(fitted.parameters, [](const FreeParameter& p) { return p.refinement == 0; });
+  ASSERT_EQ(fitted.parameters.front().name, "friction.static_N");
+  fitted.theta = Eigen::Vector2d::Zero();
+  fitted.jacobian = Eigen::MatrixXd::Zero(3, 2);
+  const auto static_N = [&](double coulomb_N) {
+    std::vector<double> sizes;
+    for (const Eigen::VectorXd& start :
+         revived_refinements(axis_with({{"friction.coulomb_N", coulomb_N}}), fitted)) {
+      sizes.push_back(fitted.parameters.front().to_physical(start[0]));
+    }
+    return sizes;
+  };
+  EXPECT_THAT(static_N(20.0), Each(AllOf(Gt(20.0), Lt(60.0))));
+  EXPECT_DOUBLE_EQ(static_N(40.0).at(0), 2.0 * static_N(20.0).at(0));
 }
 
 // Static friction that the file has and the rig has not: the fit brings it to nothing, and the
