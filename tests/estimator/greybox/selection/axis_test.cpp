@@ -115,7 +115,7 @@ TEST(AxisGain, ThatIsSteadyDoesNotChange) {
 
 // A narrow resonance and a slow random force passed for it; and its level is the plant's damping,
 // which alone sets the error of all points together.
-TEST(Axis, ADampingThatRisesAboutAPlaceIsLearnedAsACurve) {
+TEST(LongAxis, ADampingThatRisesAboutAPlaceIsLearnedAsACurve) {
   const auto tight = [](double v_mps, double y_m) {
     return 120.0 * v_mps * std::exp(-std::pow((y_m - 0.02) / 0.05, 2));
   };

@@ -37,7 +37,7 @@ InnovationSearch searched_after_simulations(const std::string& spec, std::size_t
 }
 
 // Without the line, a resonance passes for the oil that the pulsation shakes.
-TEST(InnovationSearch, AnEffectTakenBeforeALineIsExchangedForTheRightOne) {
+TEST(LongInnovationSearch, AnEffectTakenBeforeALineIsExchangedForTheRightOne) {
   const InnovationSearch found = searched_after_simulations(
       "motion=multisine,length_s=12,entrained_air.fraction_ratio=0.3,"
       "outside.pulsation_Pa=200000,outside.pulsation_Hz=14",

@@ -50,7 +50,7 @@ TEST(SimulatedLaws, ALawBesideADeadBandIsFoundWithIt) {
 }
 
 // Two more parameters explain it, and the damping of the plant at its bound.
-TEST(SimulatedLaws, AnEffectThatBendsThePlantGivesWayToALaw) {
+TEST(LongSimulatedLaws, AnEffectThatBendsThePlantGivesWayToALaw) {
   const SearchContext context =
       context_of("motion=multisine,length_s=20,left_out=power_damping,left_out.size=8000", 27);
   const Diagnosis d = explained(context, true);
