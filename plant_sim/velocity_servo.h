@@ -10,7 +10,8 @@
 // on the command, on gain u (acceleration_limit), on x (deadband, flow_asymmetry, underlap: x
 // stands for the spool position, gain for its travel per volt), and on the reading. Position is
 // relative, and the stroke has no end. Each step with the command held is solved exactly in x; what
-// opening() makes of it is integrated by Gauss's rule of two points.
+// opening() makes of it is integrated by Gauss's rule of two points. The effect second_order_lag
+// gives a lag of first order inertia.
 #pragma once
 
 #include <array>
@@ -27,8 +28,8 @@ class VelocityServo {
  public:
   static constexpr const char* kName = "velocity_servo";
   static constexpr std::array kSites = {effects::Site::command, effects::Site::set_speed,
-                                        effects::Site::opening, effects::Site::lap,
-                                        effects::Site::sensor};
+                                        effects::Site::lag,     effects::Site::opening,
+                                        effects::Site::lap,     effects::Site::sensor};
 
   struct Parameters {
     S gain_mps_per_V = 0.05;
@@ -92,7 +93,13 @@ class VelocityServo {
     });
     effects.prepare(step_s);
     step_s_ = step_s;
-    second_order_ = !all(parameters.damping_ratio <= S(0.0));
+    // the model's own damping ratio has priority over an effect's inertia
+    const S ratio = effects.inertia_ratio();
+    const auto inert = (parameters.damping_ratio <= S(0.0)) & (ratio > S(kLeastInertia));
+    const S root = sqrt(max(ratio, S(kLeastInertia)));
+    tau_s_ = select(inert, parameters.time_constant_s * root, parameters.time_constant_s);
+    zeta_ = select(inert, S(0.5) / root, parameters.damping_ratio);
+    second_order_ = !all(zeta_ <= S(0.0));
     constexpr double kNode = 0.21132486540518712;  // (1 - 1/sqrt 3) / 2
     early_ = response(kNode * step_s);
     late_ = response((1.0 - kNode) * step_s);
@@ -106,22 +113,21 @@ class VelocityServo {
     drive_V_ = effects.command_V(drive_V_, [&] { return motion(state.drive_mps); });
     const S goal_mps = effects.set_mps(parameters.gain_mps_per_V * drive_V_, state.drive_mps);
     const S gap_mps = state.drive_mps - goal_mps;
-    S lag_m = gap_mps * parameters.time_constant_s * (S(1.0) - whole_.of_gap);
+    S lag_m = gap_mps * tau_s_ * (S(1.0) - whole_.of_gap);
     S early_mps = gap_mps * early_.of_gap;
     S late_mps = gap_mps * late_.of_gap;
     S left_mps = gap_mps * whole_.of_gap;
     if (second_order_) {
-      const S tau_s = parameters.time_constant_s;
+      const S tau_s = tau_s_;
       const S rate_mps2 = state.drive_mps2;
       early_mps = early_mps + rate_mps2 * early_.of_rate_s;
       late_mps = late_mps + rate_mps2 * late_.of_rate_s;
       left_mps = left_mps + rate_mps2 * whole_.of_rate_s;
       const S left_mps2 = gap_mps * whole_.rate_of_gap_per_s + rate_mps2 * whole_.rate_of_rate;
       // the equation of the lag, integrated over the step
-      lag_m = select(parameters.damping_ratio > S(0.0),
-                     tau_s * (S(2.0) * parameters.damping_ratio * (gap_mps - left_mps) +
-                              tau_s * (rate_mps2 - left_mps2)),
-                     lag_m);
+      lag_m = select(
+          zeta_ > S(0.0),
+          tau_s * (S(2.0) * zeta_ * (gap_mps - left_mps) + tau_s * (rate_mps2 - left_mps2)), lag_m);
       state.drive_mps2 = clamp(left_mps2, S(-kDrive_mps2), S(kDrive_mps2));
     }
     const S bent_mps = S(0.5) * (bent(goal_mps + early_mps) +  //
@@ -140,6 +146,7 @@ class VelocityServo {
   static constexpr double kDrive_mps = 1e6;  ///< the largest gain at the largest command
 
   static constexpr double kDrive_mps2 = 1e18;
+  static constexpr double kLeastInertia = 1e-10;  ///< below it a lag is of first order
 
   /// What a gap between x and gain u, and the rate at which it changes, leave after a time: of the
   /// gap  of_gap gap + of_rate rate,  of the rate  rate_of_gap gap + rate_of_rate rate.
@@ -148,7 +155,7 @@ class VelocityServo {
   };
 
   Response response(double time_s) const {
-    const S tau_s = parameters.time_constant_s;
+    const S tau_s = tau_s_;
     const S first = exp(-min(S(time_s) / max(tau_s, S(1e-12)), S(700.0))) *
                     select(tau_s > S(0.0), S(1.0), S(0.0));
     const Response lag{first, S(0.0), S(0.0), S(0.0)};
@@ -158,7 +165,7 @@ class VelocityServo {
     constexpr double kOffDoubleRoot = 1e-5;
     constexpr double kHalfPi = 1.5707963267948966;
     constexpr double kLongest = 1e5;  // in tau: all is over
-    const S zeta = parameters.damping_ratio;
+    const S zeta = zeta_;
     const S time = min(S(time_s) / max(tau_s, S(1e-12)), S(kLongest));
     const S squared = zeta * zeta - S(1.0);
     const S w = max(sqrt(abs(squared)), S(kOffDoubleRoot));
@@ -195,6 +202,7 @@ class VelocityServo {
   }
 
   double step_s_ = 0.0;
+  S tau_s_, zeta_;             ///< of the lag, with an effect's inertia
   bool second_order_ = false;  ///< in any lane
   S drive_V_ = 0.0;            ///< held through the step
   Response early_, late_, whole_;

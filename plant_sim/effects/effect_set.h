@@ -60,6 +60,14 @@ class EffectSet : public EffectStore<S, E...> {
     return asked_mps;
   }
 
+  [[nodiscard]] S inertia_ratio() const {
+    S most = 0.0;
+    this->template for_each_active<Site::lag>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      most = max(most, T::inertia_ratio(p));
+    });
+    return most;
+  }
+
   /// Call after a reset with the motion that steps begin from.
   template <class Motion>
   void start(Motion&& motion) {

@@ -5,6 +5,7 @@
 //   command       S command_V(p, memory, u_V)                once per step, may remember
 //   drive         S drive_V(p, memory, u_V)                  command after a motor's drive
 //   set_speed     S set_mps(p, memory, asked_mps, moving_mps) speed that a servo's loop is given
+//   lag           S inertia_ratio(p)                         of a servo's own lag, over its square
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
 //   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null
@@ -45,6 +46,7 @@ enum class Site : unsigned {
   command,
   drive,
   set_speed,
+  lag,
   spool,
   opening,
   lap,
@@ -60,9 +62,10 @@ enum class Site : unsigned {
 };
 
 inline const char* site_name(Site site) {
-  constexpr const char* kNames[] = {"command", "drive",  "set_speed",    "spool",   "opening",
-                                    "lap",     "supply", "flow",         "leakage", "bulk_modulus",
-                                    "inertia", "force",  "dry_friction", "sensor",  "coupling"};
+  constexpr const char* kNames[] = {"command", "drive",        "set_speed",    "lag",
+                                    "spool",   "opening",      "lap",          "supply",
+                                    "flow",    "leakage",      "bulk_modulus", "inertia",
+                                    "force",   "dry_friction", "sensor",       "coupling"};
   return kNames[static_cast<unsigned>(site)];
 }
 

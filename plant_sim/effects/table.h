@@ -22,6 +22,7 @@
 #include "plant_sim/effects/null_bias.h"
 #include "plant_sim/effects/quadratic_damping.h"
 #include "plant_sim/effects/second_mass.h"
+#include "plant_sim/effects/second_order_lag.h"
 #include "plant_sim/effects/spool_rate_limit.h"
 #include "plant_sim/effects/supply_droop.h"
 #include "plant_sim/effects/transport_delay.h"
@@ -38,6 +39,7 @@ using Effects = EffectSet<S,                  //
                           AccelerationLimit,  //
                           DriveSaturation,    //
                           DriveLag,           //
+                          SecondOrderLag,     //
                           SpoolRateLimit,     //
                           Deadband,           //
                           FlowAsymmetry,      //

@@ -148,11 +148,11 @@ TEST(ModelFile, RefusesAnEffectWhoseSiteThePlantLacks) {
     (void)read(text("velocity_servo", "supply_droop"));
     ADD_FAILURE() << "a velocity servo has no supply";
   } catch (const config::schema::ConfigError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "x.toml: [effects.supply_droop]: supply_droop acts on supply, which "
-        "velocity_servo does not have; allowed: effects of its sites command, set_speed, opening, "
-        "lap, sensor");
+    EXPECT_STREQ(error.what(),
+                 "x.toml: [effects.supply_droop]: supply_droop acts on supply, which "
+                 "velocity_servo does not have; allowed: effects of its sites command, set_speed, "
+                 "lag, opening, "
+                 "lap, sensor");
   }
   EXPECT_THROW((void)read(text("force_driven_axis", "deadband")), config::schema::Error);
   // slaves add mass and force: one of the two is not enough

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
@@ -41,6 +42,18 @@ std::string second_mass_words(const selection::Diagnosis& diagnosis) {
             words(quantity(resonance->name, held_Hz, std::nan(""))) + " with the driven part held)";
   }
   return text;
+}
+
+/// ": natural frequency 21.2 Hz, damping ratio 0.800", of a model with such a lag.
+std::string second_order_words(const selection::Diagnosis& diagnosis) {
+  plant_sim::ModelFile model = diagnosis.better;
+  const double* ratio = model.value("second_order_lag.inertia_ratio");
+  const double* tau_s = model.value("time_constant_s");
+  if (ratio == nullptr || tau_s == nullptr || !(*ratio > 0.0) || !(*tau_s > 0.0)) return "";
+  const double root = std::sqrt(*ratio);
+  return fmt::format(" (natural frequency {} Hz, damping ratio {})",
+                     config::units::three_digits(1.0 / (2.0 * std::numbers::pi * *tau_s * root)),
+                     config::units::three_digits(0.5 / root));
 }
 
 /// ": 14 values from -7200 to 4697"; empty for what is no curve.
@@ -85,6 +98,7 @@ std::string effect_words(const selection::Diagnosis& diagnosis, const std::strin
             config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
             (p.at_bound ? " (at its bound)" : "");
   }
+  if (effect == "second_order_lag") text += second_order_words(diagnosis);
   return name_words(diagnosis, effect) + text;
 }
 

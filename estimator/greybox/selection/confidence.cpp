@@ -50,6 +50,7 @@ std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
     return "force";
   }
   if (site == "sensor") return "measurement";
+  if (site == "lag") return site;
   if (site == "command" || site == "drive")
     return is_driven_by_force(diagnosis) ? "force" : "command";
   return "flow";
@@ -65,7 +66,7 @@ bool is_same_site(const std::string& one, const std::string& other) {
 
 /// True for a lag beside which another one may be what is missing.
 bool may_be_another_lag(const Localisation& where, const std::string& effect) {
-  return (effect == "transport_delay" || effect == "drive_lag") &&
+  return (effect == "transport_delay" || effect == "drive_lag" || effect == "second_order_lag") &&
          std::find(where.or_sites.begin(), where.or_sites.end(), "lag") != where.or_sites.end();
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "plant_sim/library.h"
 #include "tests/plant_sim/support.h"
@@ -18,6 +19,7 @@ TYPED_TEST_SUITE(EveryEffect, Plants);
 template <class Plant>
 std::vector<double> driven(Plant& plant) {
   const double scale = std::string(Plant::kName) == "force_driven_axis" ? 20.0 : 1.0;
+  if constexpr (std::is_same_v<Plant, Servo>) plant.parameters.time_constant_s = 0.02;
   plant.prepare(1e-3);
   plant.reset();
   for (int k = 0; k < 3000; ++k) {

@@ -80,6 +80,19 @@ TEST(EffectWords, ACurveIsItsRange) {
   EXPECT_EQ(effect_words(d, "force_over_y"), "force_over_y: 3 values from -72 to 47.5");
 }
 
+TEST(EffectWords, OfALagOfSecondOrderSayWhatAValveIsDescribedBy) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.better = plant_sim::load_model(SPOOLWATCH_SOURCE_DIR "/config/models/velocity_servo.toml");
+  *d.better.value("time_constant_s") = 0.02;
+  *d.better.value("second_order_lag.inertia_ratio") = 1.0;
+  d.parameters = {{"second_order_lag.inertia_ratio", 1.0, 0.01, false}};
+  // 1 / (2 pi 0.02 s)
+  EXPECT_EQ(effect_words(d, "second_order_lag"),
+            "second_order_lag: inertia 100.0 +- 1.0 % (natural frequency 7.96 Hz, damping ratio "
+            "0.5)");
+}
+
 TEST(EffectWords, OfAnEffectThatTheModelHasAreWhatItLacks) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;

@@ -26,6 +26,33 @@ Diagnosis diagnosed(const diagnose_test::ServoRun& run) {
 
 double value(const Diagnosis& d, const std::string& name) { return d.final.value(name); }
 
+// A valve of 10.6 Hz whose damping ratio is 0.6, against a file with a lag of first order.
+TEST(ServoLaws, ASpeedThatOvershootsIsALagOfSecondOrder) {
+  constexpr double kNatural_per_s = 66.7;
+  constexpr double kDamping_ratio = 0.6;
+  double speed_mps = 0.0;
+  double rate_mps2 = 0.0;
+  const diagnose_test::ServoRun run{.rate_mps =
+                                        [&](double u_V, double, double) {
+                                          rate_mps2 +=
+                                              1e-4 * kNatural_per_s *
+                                              (kNatural_per_s * (kServoGain * u_V - speed_mps) -
+                                               2.0 * kDamping_ratio * rate_mps2);
+                                          return speed_mps += 1e-4 * rate_mps2;
+                                        },
+                                    .samples = 2400};
+  plant_sim::ModelFile model = diagnose_test::servo_model();
+  *model.value("time_constant_s") = 0.01;
+  const Diagnosis d =
+      diagnose(make_problem(model, fit_dataset({diagnose_test::servo_record(run)}, {})), {});
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("second_order_lag"));
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+  // the record's own integration moves its poles by half a step of 0.1 ms
+  EXPECT_NEAR(value(d, "second_order_lag.inertia_ratio"),
+              1.0 / (4.0 * kDamping_ratio * kDamping_ratio), 0.01);
+}
+
 TEST(ServoLaws, ARampOfTheSpeedIsNamedWithItsLimit) {
   constexpr double kLimit_mps2 = 0.35;
   double speed_mps = 0.0;
