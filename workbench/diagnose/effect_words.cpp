@@ -80,6 +80,7 @@ std::string name_words(const selection::Diagnosis& diagnosis, const std::string&
 std::string names_words(const selection::Diagnosis& diagnosis,
                         const std::vector<std::string>& effects) {
   std::vector<std::string> names;
+  names.reserve(effects.size());
   for (const std::string& effect : effects) names.push_back(name_words(diagnosis, effect));
   return config::schema::listed(names);
 }
