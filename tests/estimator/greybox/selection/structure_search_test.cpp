@@ -39,6 +39,27 @@ TEST(StructureSearch, TakesNothingOnAHealthyRecordWhoseGainIsOff) {
   EXPECT_NEAR(search.final.fitted.value("gain_mps_per_V"), 1.02 * kServoGain, 1e-5);
 }
 
+// A gain of 5 % on both halves of the data, of which the held-out ones do not exclude chance.
+TEST(StructureSearch, TakesAGainOfItsFitOnlyWhereNoiseDoesNotExplainTheStage) {
+  const SearchContext context = servo_context({.rate_mps = with_offset(0.06)});
+  ModelStage stage = fit_as_given(context).first;
+  Candidate candidate;
+  candidate.effects = {"null_bias"};
+  candidate.fitted = stage.fitted;
+  candidate.fitted.training_rms_m = 0.95 * stage.fitted.training_rms_m;
+  candidate.fitted_at_all = true;
+  candidate.p_value = 0.1;
+  for (const double floors : {1.0, 3.0}) {
+    stage.fitted.validation_rms_m = floors * context.problem.data.noise_floor_m;
+    candidate.validation_rms_m = 0.95 * stage.fitted.validation_rms_m;
+    EXPECT_EQ(is_gain(context, stage, candidate), floors > 1.0) << floors;
+  }
+  candidate.p_value = 0.001;
+  stage.fitted.validation_rms_m = context.problem.data.noise_floor_m;
+  candidate.validation_rms_m = 0.95 * stage.fitted.validation_rms_m;
+  EXPECT_TRUE(is_gain(context, stage, candidate));
+}
+
 TEST(StructureSearch, FindsTwoEffectsOneAfterTheOther) {
   const SearchContext context = servo_context({.rate_mps = with_offset_and_band(0.06, 0.1)});
   const StructureSearch search =
