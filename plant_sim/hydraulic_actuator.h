@@ -52,7 +52,7 @@ struct DoubleRodDesign {
             0.2);
       field("stroke_m", "stroke L", 1e-3, 100.0, 0.61, stroke_m);
       field("supply_pressure_Pa", "supply pressure Ps", 0.0, 1e8, 6.89e6, supply_pressure_Pa, 0.03);
-      field("return_pressure_Pa", "return pressure Pe", 0.0, 1e8, 0.0, return_pressure_Pa, 0.3);
+      field("return_pressure_Pa", "return pressure Pe", 0.0, 1e8, 0.0, return_pressure_Pa);
       field("discharge_coefficient", "orifice coefficient Cd", 1e-3, 2.0, 0.60,
             discharge_coefficient);
       field("density_kg_per_m3", "oil density rho", 100.0, 5000.0, 847.0, density_kg_per_m3);

@@ -77,7 +77,7 @@ struct TwoAreaDesign {
       field("inclination_rad", "of the axis, upwards when it extends; pi/2 lifts its mass", -1.5708,
             1.5708, 0.0, inclination_rad);
       field("supply_pressure_Pa", "supply pressure Ps", 0.0, 1e8, 1.4e7, supply_pressure_Pa, 0.05);
-      field("return_pressure_Pa", "return pressure Pe", 0.0, 1e8, 3e5, return_pressure_Pa, 0.3);
+      field("return_pressure_Pa", "return pressure Pe", 0.0, 1e8, 3e5, return_pressure_Pa);
       field("rated_flow_m3ps", "flow of the cap side's edge at rated drop and command", 1e-9, 1.0,
             6.667e-4, rated_flow_m3ps, 0.3);
       field("rated_drop_Pa", "drop over one edge at which the flow is rated", 1e3, 1e8, 3.5e6,

@@ -202,7 +202,7 @@ class VelocityServo {
   }
 
   double step_s_ = 0.0;
-  S tau_s_, zeta_;             ///< of the lag, with an effect's inertia
+  S tau_s_, zeta_;             ///< the lag's, with an effect's inertia
   bool second_order_ = false;  ///< in any lane
   S drive_V_ = 0.0;            ///< held through the step
   Response early_, late_, whole_;

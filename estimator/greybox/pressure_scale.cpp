@@ -53,6 +53,14 @@ bool has_absolute(const plant_sim::ModelFile& model) {
          std::any_of(model.parameters.begin(), model.parameters.end(), cushion);
 }
 
+/// True for a return pressure that no gauge has told: it is small, and known to some tenths of a
+/// bar at best, so that held it may not set the scale of all pressures.
+bool is_rough(const plant_sim::ModelFile& model, const std::string& name) {
+  if (name != "return_pressure_Pa") return false;
+  return std::none_of(model.priors.begin(), model.priors.end(),
+                      [&](const auto& prior) { return prior.name == name && prior.value == 0.0; });
+}
+
 /// True when a parameter that scales is not among the fitted ones.
 bool ties(const FitSummary& fitted, const std::string& name, double value) {
   if (value == 0.0 || power_of(name) == 0.0) return false;
@@ -141,7 +149,7 @@ VectorXd pressure_scale(const plant_sim::ModelFile& model, const FitSummary& fit
   if (std::none_of(model.parameters.begin(), model.parameters.end(), is_supply)) return {};
   if (has_absolute(model) || formulas_tie(model, fitted)) return {};
   for (const plant_sim::NamedValue& one : model.parameters) {
-    if (ties(fitted, one.name, one.value)) return {};
+    if (!is_rough(model, one.name) && ties(fitted, one.name, one.value)) return {};
   }
   for (const plant_sim::ModelFile::Effect& effect : model.effects) {
     for (const plant_sim::NamedValue& one : effect.parameters) {

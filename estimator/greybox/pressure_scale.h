@@ -18,8 +18,8 @@ namespace estimator::greybox {
 [[nodiscard]] double pressure_scale_power(const std::string& name);
 
 /// d theta of that direction, of arbitrary length; empty where something ties the parameters to an
-/// absolute scale: one that is held or at its bound, a pressure that is given, a change, a formula
-/// that is not the same law at another scale.
+/// absolute scale: one that is held, but for a return pressure whose prior is not 0 or at its
+/// bound, a pressure that is given, a change, a formula that is not the same law at another scale.
 [[nodiscard]] Eigen::VectorXd pressure_scale(const plant_sim::ModelFile& model,
                                              const FitSummary& fitted);
 

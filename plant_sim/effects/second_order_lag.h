@@ -5,8 +5,8 @@
 //
 // tau  time constant of the servo's own lag, s: the area between a step and its response, whatever
 //      the ratio      ratio  0 is a lag of first order, 1/4 critical damping, above it x overshoots
-// Without effect where the servo itself has a lag of second order. Source: second-order model of a
-// servo valve, Merritt, Hydraulic Control Systems (1967), chapter 7.
+// Without effect where the servo itself has a lag of second order, or none (tau = 0). Source:
+// second-order model of a servo valve, Merritt, Hydraulic Control Systems (1967), chapter 7.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 //   command       S command_V(p, memory, u_V)                once per step, may remember
 //   drive         S drive_V(p, memory, u_V)                  command after a motor's drive
 //   set_speed     S set_mps(p, memory, asked_mps, moving_mps) speed that a servo's loop is given
-//   lag           S inertia_ratio(p)                         of a servo's own lag, over its square
+//   lag           S inertia_ratio(p)                         coefficient of x'' over tau^2
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
 //   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null

@@ -47,6 +47,18 @@ bool set_effect(Plant<S>& plant, const std::string& effect, const std::string& n
   return found;
 }
 
+/// A servo of 50 mm/s per volt that lags by tau_s, with one parameter of an effect, at rest.
+inline Servo servo_with(const std::string& effect, const std::string& name, double value,
+                        double tau_s) {
+  Servo servo;
+  servo.parameters.gain_mps_per_V = 0.05;
+  servo.parameters.time_constant_s = tau_s;
+  set_effect(servo, effect, name, value);
+  servo.prepare(1e-3);
+  servo.reset();
+  return servo;
+}
+
 /// Runs with u held for the time.
 template <class Plant>
 void hold(Plant& plant, double u_V, double duration_s, double step_s = 1e-3) {

@@ -67,7 +67,7 @@ State moving(const Machine& machine, double v_mps, double z_m) {
   return x;
 }
 
-/// What friction takes from the acceleration at a speed, with the bristles bent by z_m, in N.
+/// Friction at a speed, N, by the acceleration that it takes; the bristles are bent by z_m.
 double friction_N(const Maker& maker, const Hidden& hidden, double v_mps, double z_m) {
   const auto rubbing = maker.make(hidden);
   const auto smooth = maker.make({});

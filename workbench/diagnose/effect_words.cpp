@@ -44,7 +44,7 @@ std::string second_mass_words(const selection::Diagnosis& diagnosis) {
   return text;
 }
 
-/// ": natural frequency 21.2 Hz, damping ratio 0.800", of a model with such a lag.
+/// " (natural frequency 21.2 Hz, damping ratio 0.8)"; empty for a model without such a lag.
 std::string second_order_words(const selection::Diagnosis& diagnosis) {
   plant_sim::ModelFile model = diagnosis.better;
   const double* ratio = model.value("second_order_lag.inertia_ratio");

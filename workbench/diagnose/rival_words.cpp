@@ -8,6 +8,15 @@
 namespace workbench::diagnose {
 namespace {
 
+constexpr double kCritical_ratio = 0.25;  ///< inertia of a lag with a double pole
+
+/// True for a second_order_lag with real poles, its error aside.
+bool is_overdamped(const selection::Diagnosis& d) {
+  return std::any_of(d.parameters.begin(), d.parameters.end(), [](const auto& p) {
+    return p.name == "second_order_lag.inertia_ratio" && !(p.value - p.std_error > kCritical_ratio);
+  });
+}
+
 /// True where a return pressure that no fit moves presses on two areas that differ.
 bool holds_return_pressure(const selection::Diagnosis& d) {
   plant_sim::ModelFile model = d.better;
@@ -42,6 +51,11 @@ std::vector<std::string> rival_words(const selection::Diagnosis& d) {
       out.emplace_back(
           "A return pressure other than the file's, which is held, acts much as load_force does: a "
           "gauge would tell.");
+    }
+    if (name == "second_order_lag" && is_overdamped(d)) {
+      out.emplace_back(
+          "A damping ratio of 1 or more is that of two lags in a row, of which one may be the "
+          "position sensor's filter: a second sensor would tell.");
     }
     if (name != "drive_lag" && name != "transport_delay") continue;
     out.push_back("A lag of the position sensor, such as its filter's, acts as " + name +

@@ -210,9 +210,15 @@ void two_area_cylinder(const ModelFile& model, const Values& p, std::vector<Deri
 
 void servo(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>& out) {
   speeds(model, out);
-  const double lag_s = p("time_constant_s");
+  double lag_s = p("time_constant_s");
   if (lag_s > 0.0) {
-    const double zeta = p("damping_ratio");
+    double zeta = p("damping_ratio");
+    ModelFile copy = model;
+    const double* inertia = copy.value("second_order_lag.inertia_ratio");
+    if (!(zeta > 0.0) && inertia != nullptr && *inertia > 0.0) {
+      zeta = 0.5 / std::sqrt(*inertia);
+      lag_s *= std::sqrt(*inertia);
+    }
     const double ratio = zeta > 0.0 ? bandwidth_ratio(zeta) : 1.0;
     out.push_back({"bandwidth_Hz", "-3 dB frequency of the speed", ratio / (kTwoPi * lag_s)});
   }

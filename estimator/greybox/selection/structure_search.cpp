@@ -236,8 +236,8 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
       kPerParameter_nats *
       static_cast<double>(candidate.fitted.parameters.size() - stage.fitted.parameters.size()) *
       correlation_factor(candidate.fitted.residual_m, fitted) / fitted.sum();
-  // not chance: better on the validation samples throughout, or equally better on the training
-  // samples
+  // not chance: better on the validation samples throughout, or, where noise does not explain the
+  // stage, equally better on the training samples
   const bool fits_better = fit_gain > enough + by_chance && !is_explained(context, stage);
   return candidate.fitted_at_all && gain > enough &&
          !leaves_its_range(candidate.fitted, stage.fitted.parameters.size()) &&

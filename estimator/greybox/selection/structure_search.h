@@ -43,7 +43,7 @@ struct Candidate {
   bool fitted_at_all = false;
 };
 
-/// True where a candidate's gain over the stage is worthwhile and no chance. Where noise explains
+/// True where a candidate's gain over the stage is worthwhile and not chance. Where noise explains
 /// the stage, held-out data decide alone: a fit follows noise.
 [[nodiscard]] bool is_gain(const SearchContext& context, const ModelStage& stage,
                            const Candidate& candidate);

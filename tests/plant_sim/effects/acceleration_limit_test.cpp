@@ -13,13 +13,7 @@ namespace {
 constexpr double kLimit_mps2 = 0.4;
 
 Servo ramped(double tau_s) {
-  Servo servo;
-  servo.parameters.gain_mps_per_V = 0.05;
-  servo.parameters.time_constant_s = tau_s;
-  set_effect(servo, "acceleration_limit", "limit_mps2", kLimit_mps2);
-  servo.prepare(1e-3);
-  servo.reset();
-  return servo;
+  return servo_with("acceleration_limit", "limit_mps2", kLimit_mps2, tau_s);
 }
 
 // y = a t^2/2 up to gain u, then gain u t

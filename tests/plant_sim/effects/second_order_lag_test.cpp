@@ -13,15 +13,7 @@ namespace {
 constexpr double kTau_s = 0.02;
 constexpr double kU_V = 4.0;
 
-Servo inert(double ratio) {
-  Servo servo;
-  servo.parameters.gain_mps_per_V = 0.05;
-  servo.parameters.time_constant_s = kTau_s;
-  set_effect(servo, "second_order_lag", "inertia_ratio", ratio);
-  servo.prepare(1e-3);
-  servo.reset();
-  return servo;
-}
+Servo inert(double ratio) { return servo_with("second_order_lag", "inertia_ratio", ratio, kTau_s); }
 
 // x = g u (1 - exp(-a t) (cos(w t) + a/w sin(w t))) with a = 1/(2 r tau), w^2 = 1/(r tau^2) - a^2
 TEST(SecondOrderLag, AStepRisesAsTheClosedFormSays) {

@@ -77,6 +77,10 @@ TEST(Show, DerivesWhatADataSheetStates) {
   const auto second = shown({model("velocity_servo"), "--set",
                              fmt::format("parameters.damping_ratio={}", std::sqrt(0.5))});
   EXPECT_NEAR(derived(second, "bandwidth_Hz"), 15.915, 1e-3);
+  // the same by the inertia of a lag of 10 ms: 1 / (2 pi 0.01 sqrt(0.5))
+  const auto inert =
+      shown({model("velocity_servo"), "--set", "effects.second_order_lag.inertia_ratio=0.5"});
+  EXPECT_NEAR(derived(inert, "bandwidth_Hz"), 22.508, 1e-3);
   const auto thesis = shown({model("thesis")});
   // two orifices in series: A v = G x sqrt((Ps - d v/A)/2)
   const double orifice = 0.6 * 2.07e-2 * std::sqrt(2.0 / 847.0) * 2.79e-4;

@@ -48,6 +48,18 @@ TEST(RivalWords, TellOfAReturnPressureOnTwoAreas) {
   EXPECT_THAT(rival_words(d), IsEmpty()) << "it is fitted beside the force";
 }
 
+TEST(RivalWords, ALagWithRealPolesMayBeTheSensorsFilterBesideTheServos) {
+  selection::Diagnosis d = found("second_order_lag");
+  selection::ParameterValue inertia;
+  inertia.name = "second_order_lag.inertia_ratio";
+  inertia.value = 0.2;
+  inertia.std_error = 0.01;
+  d.parameters = {inertia};
+  EXPECT_THAT(rival_words(d), ElementsAre(HasSubstr("two lags in a row")));
+  d.parameters.front().value = 0.4;
+  EXPECT_THAT(rival_words(d), IsEmpty()) << "a speed that overshoots";
+}
+
 TEST(RivalWords, StandAmongTheRemarks) {
   ExampleReport outcome;
   outcome.diagnosis.missing.emplace_back("drive_lag");
