@@ -25,10 +25,10 @@ template <class S>
 class ForceDrivenAxis {
  public:
   static constexpr const char* kName = "force_driven_axis";
-  static constexpr std::array kSites = {effects::Site::command,      effects::Site::drive,
-                                        effects::Site::inertia,      effects::Site::force,
-                                        effects::Site::dry_friction, effects::Site::sensor,
-                                        effects::Site::coupling};
+  static constexpr std::array kSites = {effects::Site::command, effects::Site::amplifier,
+                                        effects::Site::drive,   effects::Site::inertia,
+                                        effects::Site::force,   effects::Site::dry_friction,
+                                        effects::Site::sensor,  effects::Site::coupling};
 
   struct Parameters {
     S mass_kg = 100.0;

@@ -9,7 +9,8 @@
 //   xv >= 0: Qi = Gi xv q(Ps - Pi),  Qo = Go xv q(Po - Pe)
 //   xv <  0: Qi = Gi xv q(Pi - Pe),  Qo = Go xv q(Ps - Po)
 //
-// and behind an underlap U, with a+ = max(xv + U, 0) and a- = max(U - xv, 0),
+// and of a valve whose edges are open at null, by an underlap U or a leakage, with a+ = A(xv + U)
+// and a- = A(U - xv), A(e) = max(e, 0) or, of edges that leak, more,
 //
 //   Qi = Gi (a+ q(Ps - Pi) - a- q(Pi - Pe)),   Qo = Go (a+ q(Po - Pe) - a- q(Ps - Po))
 //
@@ -81,11 +82,11 @@ template <class S, class Design>
 class FourWayCylinder {
  public:
   static constexpr std::array kSites = {
-      effects::Site::command, effects::Site::spool,        effects::Site::opening,
-      effects::Site::lap,     effects::Site::supply,       effects::Site::flow,
-      effects::Site::leakage, effects::Site::bulk_modulus, effects::Site::inertia,
-      effects::Site::force,   effects::Site::dry_friction, effects::Site::sensor,
-      effects::Site::coupling};
+      effects::Site::command,      effects::Site::amplifier, effects::Site::spool,
+      effects::Site::opening,      effects::Site::lap,       effects::Site::edge,
+      effects::Site::supply,       effects::Site::flow,      effects::Site::leakage,
+      effects::Site::bulk_modulus, effects::Site::inertia,   effects::Site::force,
+      effects::Site::dry_friction, effects::Site::sensor,    effects::Site::coupling};
 
   using PlantDesign = Design;
   using Parameters = typename Design::Parameters;
@@ -163,7 +164,7 @@ class FourWayCylinder {
     S in_m3ps;   ///< into the chamber that extends
     S out_m3ps;  ///< out of the chamber that retracts
   };
-  /// Openings of an underlapped valve's edges.
+  /// Openings of the edges of a valve that is open at null.
   struct Edges {
     S ahead_m;  ///< those that extend the rod: Ps to chamber i, chamber o to Pe
     S back_m;   ///< those that retract it: Ps to chamber o, chamber i to Pe
@@ -184,7 +185,7 @@ class FourWayCylinder {
   Edges edges(const S& opening_m) const;
   template <bool kEffects>
   S inlet_Pa(const State& x, const S& opening_m) const;
-  Flows underlapped_flows(const State& x, const S& opening_m) const;
+  Flows lapped_flows(const State& x, const S& opening_m) const;
   static S cushion_ratio(const S& edge, const S& throttle);
   template <bool kEffects>
   void throttle_ends(const State& x, const S& opening_m, Flows& q) const;

@@ -54,8 +54,9 @@ S FourWayCylinder<S, Design>::opening_m(const State& x) const {
 template <class S, class Design>
 typename FourWayCylinder<S, Design>::Edges FourWayCylinder<S, Design>::edges(
     const S& opening_m) const {
-  const S lap_m = effects.underlap_m(derived_.valve_gain_m_per_V);
-  return {max(opening_m + lap_m, S(0.0)), max(lap_m - opening_m, S(0.0))};
+  const S& gain = derived_.valve_gain_m_per_V;
+  const S lap_m = effects.underlap_m(gain);
+  return {effects.edge_m(opening_m + lap_m, gain), effects.edge_m(lap_m - opening_m, gain)};
 }
 
 /// Supply pressure that remains under the flow drawn through the open port; with two ports open
@@ -87,9 +88,10 @@ PressuresOf<S> FourWayCylinder<S, Design>::pressures() const {
   return {inlet_Pa<true>(state, opening_m<true>(state)), state.in_Pa, state.out_Pa};
 }
 
-/// Flows of ports with both edges open near null; without underlap those of one edge, bit for bit.
+/// Flows of ports with both edges open near null; where none is at null those of one edge, bit for
+/// bit.
 template <class S, class Design>
-typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::underlapped_flows(
+typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::lapped_flows(
     const State& x, const S& opening_m) const {
   const S supply_Pa = inlet_Pa<true>(x, opening_m);
   const S return_Pa = parameters.return_pressure_Pa;
@@ -135,7 +137,7 @@ typename FourWayCylinder<S, Design>::Flows FourWayCylinder<S, Design>::flows(con
   const S open_m = opening_m<kEffects>(x);
   Flows q;
   if (kEffects && effects.laps()) {
-    q = underlapped_flows(x, open_m);
+    q = lapped_flows(x, open_m);
   } else {
     const auto extends = open_m >= S(0.0);
     const S supply_Pa = inlet_Pa<kEffects>(x, open_m);

@@ -105,7 +105,8 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
 }
 
-/// Largest opening that the step can come to; behind an underlap that of both edges of a port.
+/// Largest opening that the step can come to; where edges are open at null that of both edges of a
+/// port.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
   const S spool_m = max(abs(state.spool_m), derived_.valve_gain_m_per_V * abs(u_V)) +
@@ -115,7 +116,10 @@ S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
   const auto at = [&] { return motion(state); };
   const S opening_m = max(spool_m, max(abs(effects.opening_m(spool_m, gain, at)),
                                        abs(effects.opening_m(-spool_m, gain, at))));
-  return effects.laps() ? opening_m + S(2.0) * effects.underlap_m(gain) : opening_m;
+  if (!effects.laps()) return opening_m;
+  const auto [ahead_m, back_m] = edges(opening_m);
+  const auto [null_ahead_m, null_back_m] = edges(S(0.0));
+  return max(ahead_m, back_m) + max(null_ahead_m, null_back_m);
 }
 
 /// The fastest that the rod can become within the step by the disturbance and the forces of

@@ -27,9 +27,10 @@ template <class S>
 class VelocityServo {
  public:
   static constexpr const char* kName = "velocity_servo";
-  static constexpr std::array kSites = {effects::Site::command, effects::Site::set_speed,
-                                        effects::Site::lag,     effects::Site::opening,
-                                        effects::Site::lap,     effects::Site::sensor};
+  static constexpr std::array kSites = {effects::Site::command,   effects::Site::amplifier,
+                                        effects::Site::set_speed, effects::Site::lag,
+                                        effects::Site::opening,   effects::Site::lap,
+                                        effects::Site::sensor};
 
   struct Parameters {
     S gain_mps_per_V = 0.05;

@@ -87,8 +87,9 @@ std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect
       p.upper = info.min > 0.0 ? std::min(info.typical / info.min, kLargest) : kLargest;
     } else {
       if (info.order == 2) p.scale = ParameterScale::square;
-      p.lower = std::max(p.to_theta(info.min), -kLargest);
-      p.upper = std::min(p.to_theta(info.max), kLargest);
+      const double largest = info.order == 2 ? kLargest * kLargest : kLargest;
+      p.lower = std::max(p.to_theta(info.min), -largest);
+      p.upper = std::min(p.to_theta(info.max), largest);
     }
     found.push_back(p);
   }

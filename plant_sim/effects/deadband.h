@@ -2,13 +2,18 @@
 //
 //   opening = xv -+ Kv w outside, 0 inside |xv| <= Kv w                       c = 0
 //   opening = (A(xv + Kv c) - A(xv - Kv c)) / (2 Kv c),  A(x) = max(|x| - Kv w, 0)^2 / 2   c > 0
+//   opening = E(xv) - E(-xv),  E(x) = (x - Kv w + sqrt((x - Kv w)^2 + (Kv r)^2)) / 2        r > 0
 //
 // xv  spool position, m          Kv  spool position per volt, m/V
 // w   half width of the band as a command, V
-// c   half the range of commands over which it opens gradually, V: rounded edges, the clearance of
-//     the lands and small notches, as edges spread evenly over the range. Up to w a parabola joins
-//     both sides; beyond, flow passes at null too.
-// Source: overlapped four-way valve, Merritt, Hydraulic Control Systems (1967), section 5-2.
+// c   half the range of commands over which it opens gradually, V: rounded edges and small notches,
+//     as edges spread evenly over the range. Up to w a parabola joins both sides; beyond, flow
+//     passes at null too.
+// r   in the place of c: width over which clearance opens an edge, V; an edge just closed is open
+// by
+//     r / 2. Net flow alone: what both edges of a port let through is the effect lap_leakage.
+// Sources: overlapped four-way valve, Merritt, Hydraulic Control Systems (1967), section 5-2; E is
+// the hyperbola between the asymptotes of an edge that closes on a gap.
 #pragma once
 
 #include <array>
@@ -23,13 +28,14 @@ template <class S>
 struct Deadband {
   static constexpr const char* kName = "deadband";
   static constexpr const char* kEquation =
-      "opening = xv -+ Kv half_width outside, 0 inside, corners rounded over corner";
+      "opening = xv -+ Kv half_width outside, 0 inside, corners rounded over corner or clearance";
   static constexpr std::array kSites = {Site::opening};
   static constexpr bool kDissipative = false;
 
   struct Parameters {
     S half_width_V = 0.0;
     S corner_V = 0.0;
+    S clearance_V = 0.0;
 
     template <class V>
     void visit(V&& v) {
@@ -39,6 +45,11 @@ struct Deadband {
                       "opens gradually from half_width_V less this to half_width_V plus this", 0.0,
                       10.0, 0.01, 0.0, 0.0, 1, 0, 2},
         corner_V);
+      v(ParameterInfo{"clearance_V",
+                      "width over which clearance of the lands opens the edges; no effect with a "
+                      "corner_V",
+                      0.0, 10.0, 0.01, 0.0, 0.0, 3, 1, 2},
+        clearance_V);
     }
   };
   struct Memory {};
@@ -46,8 +57,22 @@ struct Deadband {
   static S opening_m(const Parameters& p, const S& x_m, const S& gain_m_per_V) {
     const S band_m = p.half_width_V * gain_m_per_V;
     const S sharp_m = x_m - clamp(x_m, -band_m, band_m);
-    if (all(p.corner_V <= S(0.0))) return sharp_m;
     const S corner_m = p.corner_V * gain_m_per_V;
+    const S clearance_m = p.clearance_V * gain_m_per_V;
+    const auto cornered = corner_m > S(0.0);
+    const auto cleared = clearance_m > S(0.0);
+    S opening_m = sharp_m;
+    if (!all(clearance_m <= S(0.0)))
+      opening_m = select(cleared, cleared_m(x_m, band_m, clearance_m), opening_m);
+    if (!all(corner_m <= S(0.0)))
+      opening_m = select(cornered, cornered_m(x_m, band_m, corner_m, sharp_m), opening_m);
+    return opening_m;
+  }
+
+ private:
+  static constexpr double kLeast = 1e-300;
+
+  static S cornered_m(const S& x_m, const S& band_m, const S& corner_m, const S& sharp_m) {
     const S beyond_m = abs(x_m) - band_m;
     const auto rounded = abs(beyond_m) < corner_m;
     const S near_m = beyond_m + corner_m;
@@ -55,6 +80,15 @@ struct Deadband {
     const S opening_m = (near_m * near_m - far_m * far_m) /  //
                         select(rounded, S(4.0) * corner_m, S(1.0));
     return select(rounded, select(x_m < S(0.0), -opening_m, opening_m), sharp_m);
+  }
+
+  /// E(xv) - E(-xv), rearranged so that no large terms cancel.
+  static S cleared_m(const S& x_m, const S& band_m, const S& clearance_m) {
+    const auto gap_m = [&](const S& overlap_m) {
+      return sqrt(overlap_m * overlap_m + clearance_m * clearance_m);
+    };
+    const S gaps_m = gap_m(x_m - band_m) + gap_m(x_m + band_m);
+    return x_m * (S(1.0) - S(2.0) * band_m / max(gaps_m, S(kLeast)));
   }
 };
 

@@ -1,8 +1,9 @@
-// A drive gives no more than its current limit or its motor lets it.
+// A drive or a valve's amplifier follows no command beyond a limit: that of its current, its speed,
+// the spool's stroke.
 //
-//   |u_out| <= limit      before the drive's lag
+//   |u_out| <= limit      behind formulas of the command, ahead of every lag
 //
-// u  command, V      limit  V: the command of the largest force
+// u  command, V      limit  V
 // Source: actuator saturation, Franklin, Powell, Emami-Naeini, Feedback Control of Dynamic Systems.
 #pragma once
 
@@ -19,7 +20,7 @@ template <class S>
 struct DriveSaturation {
   static constexpr const char* kName = "drive_saturation";
   static constexpr const char* kEquation = "|u_out| <= limit";
-  static constexpr std::array kSites = {Site::drive};
+  static constexpr std::array kSites = {Site::amplifier};
   static constexpr bool kDissipative = false;
 
   struct Parameters {
@@ -27,7 +28,7 @@ struct DriveSaturation {
 
     template <class V>
     void visit(V&& v) {
-      v(ParameterInfo{"limit_V", "command of the largest force; inf is none", 1e-6,
+      v(ParameterInfo{"limit_V", "largest command that is followed; inf is none", 1e-6,
                       std::numeric_limits<double>::infinity(), 1.0,
                       std::numeric_limits<double>::infinity()},
         limit_V);
@@ -35,7 +36,7 @@ struct DriveSaturation {
   };
   struct Memory {};
 
-  static S drive_V(const Parameters& p, Memory& /*memory*/, const S& u_V) {
+  static S amplified_V(const Parameters& p, const S& u_V) {
     return clamp(u_V, -p.limit_V, p.limit_V);
   }
 };

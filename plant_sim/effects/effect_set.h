@@ -41,7 +41,10 @@ class EffectSet : public EffectStore<S, E...> {
   [[nodiscard]] S command_V(S u_V, Motion&& motion) {
     this->template for_each_active<Site::command>(
         [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::command_V(p, memory, u_V); });
-    return apply_formulas<Site::command>(u_V, motion);
+    u_V = apply_formulas<Site::command>(u_V, motion);
+    this->template for_each_active<Site::amplifier>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { u_V = T::amplified_V(p, u_V); });
+    return u_V;
   }
 
   /// Call exactly once per step, with command_V().
@@ -98,8 +101,8 @@ class EffectSet : public EffectStore<S, E...> {
     return apply_formulas<Site::opening>(x_m, motion);
   }
 
-  /// True when edges of the valve are open at null.
-  [[nodiscard]] bool laps() const { return this->acts_on(Site::lap); }
+  /// True when edges of the valve are open at null, or leak.
+  [[nodiscard]] bool laps() const { return this->acts_on(Site::lap) || this->acts_on(Site::edge); }
 
   /// Opening of every edge of the valve at null.
   [[nodiscard]] S underlap_m(const S& gain_m_per_V) const {
@@ -108,6 +111,14 @@ class EffectSet : public EffectStore<S, E...> {
       sum += T::underlap_m(p, gain_m_per_V);
     });
     return sum;
+  }
+
+  /// Opening of an edge of the valve whose land is `ahead_m` ahead of it.
+  [[nodiscard]] S edge_m(S ahead_m, const S& gain_m_per_V) const {
+    this->template for_each_active<Site::edge>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      ahead_m = T::edge_m(p, ahead_m, gain_m_per_V);
+    });
+    return max(ahead_m, S(0.0));
   }
 
   [[nodiscard]] S supply_Pa(S supply_Pa, const S& port_Pa, const S& flow) const {

@@ -1,6 +1,6 @@
 // Dry friction of seals and guides: Coulomb, Stribeck's rise towards standstill, pre-sliding.
 //
-//   sliding level   g(v) = Fc' + max(Fs - Fc', 0) exp(-(v/vs)^2),   Fc' = Fc (1 + r sign v)
+//   sliding level   g(v) = (Fc + max(Fs - Fc, 0) exp(-(v/vs)^2)) (1 + r sign v)
 //   rigid (k = 0)   F = g(v) sign v while it slides; at rest F holds the other forces up to g(0)
 //   gradual         F = g(v) tanh(v/vt)   (without k, where vt > 0)
 //   pre-sliding     F = k z + s1 exp(-(v/vd)^2) z',  dz = dx - |dx| k z / g(v)
@@ -36,7 +36,7 @@ template <class S>
 struct Friction {
   static constexpr const char* kName = "friction";
   static constexpr const char* kEquation =
-      "Coulomb (1 + ratio sign v), Stribeck Fc + (Fs - Fc) exp(-(v/vs)^2), pre-sliding spring or "
+      "Coulomb, Stribeck (Fc + (Fs - Fc) exp(-(v/vs)^2)) (1 + ratio sign v), pre-sliding spring or "
       "tanh(v/vt)";
   static constexpr std::array kSites = {Site::dry_friction};
   static constexpr bool kDissipative = true;
@@ -131,7 +131,7 @@ struct Friction {
     const auto contact_N = [&](const S& rigid_N, const S& gradual_N) {
       return select(without_spring, select(gradual, gradual_N, rigid_N), S(0.0));
     };
-    const S least_N = max(p.coulomb_N * (S(1.0) - abs(p.direction_ratio)), p.static_N);
+    const S least_N = max(p.coulomb_N, p.static_N) * (S(1.0) - abs(p.direction_ratio));
     return {contact_N(least_N, S(0.0)), contact_N(most_N(p), S(0.0)), contact_N(S(0.0), most_N(p)),
             max(p.presliding_stiffness_N_per_m, S(0.0))};
   }
@@ -149,8 +149,8 @@ struct Friction {
     const S margin_mps = S(kTurnMargin) * change_mps;
     const S turned = select(abs(step.v_mps) < margin_mps, at_turn, S(1.0));
     const S stribeck_mps = max(p.stribeck_mps, S(kLeastStribeck_mps));
-    const auto on_rise =
-        (p.static_N > least_N) & (abs(step.v_mps) < S(kStribeckReach) * stribeck_mps + margin_mps);
+    const auto on_rise = (p.static_N > p.coulomb_N) &
+                         (abs(step.v_mps) < S(kStribeckReach) * stribeck_mps + margin_mps);
     const S risen = select(on_rise, change_mps / (S(kOfStribeck) * stribeck_mps), S(1.0));
     return select(k > S(0.0), clamp(ceil(max(turned, risen)), S(1.0), S(kMostTurnParts)), S(1.0));
   }
@@ -171,7 +171,7 @@ struct Friction {
 
  private:
   static S most_N(const Parameters& p) {
-    return max(p.coulomb_N * (S(1.0) + abs(p.direction_ratio)), p.static_N);
+    return max(p.coulomb_N, p.static_N) * (S(1.0) + abs(p.direction_ratio));
   }
 
   /// The force where the transition is gradual and the step resolves it, `rigid_N` elsewhere.
@@ -212,15 +212,14 @@ struct Friction {
   }
 
   static S rise_ratio(const Parameters& p, const S& v_mps) {
-    const S least_N = p.coulomb_N * (S(1.0) - abs(p.direction_ratio));
-    if (all(p.static_N <= least_N)) return S(1.0);
+    if (all(p.static_N <= p.coulomb_N)) return S(1.0);
     const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
     return decay(min(ratio * ratio, S(kNoRise)));
   }
 
   static S level_at_N(const Parameters& p, const S& direction, const S& rise_ratio) {
-    const S coulomb_N = p.coulomb_N * (S(1.0) + direction * p.direction_ratio);
-    return coulomb_N + max(p.static_N - coulomb_N, S(0.0)) * rise_ratio;
+    const S both_N = p.coulomb_N + max(p.static_N - p.coulomb_N, S(0.0)) * rise_ratio;
+    return both_N * (S(1.0) + direction * p.direction_ratio);
   }
 
   /// The bristle after a travel of the rod, z* = +-g/k changing evenly along it:

@@ -3,12 +3,15 @@
 // lists in its own kSites which places it has. An effect fits a plant that has all of its sites.
 //
 //   command       S command_V(p, memory, u_V)                once per step, may remember
+//   amplifier     S amplified_V(p, u_V)                      command that is followed
 //   drive         S drive_V(p, memory, u_V)                  command after a motor's drive
 //   set_speed     S set_mps(p, memory, asked_mps, moving_mps) speed that a servo's loop is given
 //   lag           S inertia_ratio(p)                         coefficient of x'' over tau^2
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
 //   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
 //   lap           S underlap_m(p, gain_m_per_V)              opening of every edge at null
+//   edge          S edge_m(p, ahead_m, gain_m_per_V)         opening of an edge, its land so far
+//                                                            ahead; negative: it covers the edge
 //   supply        S supply_Pa(p, supply_Pa, port_Pa, flow)   pressure ahead of the open orifice;
 //                                                            flow: its m3/s per sqrt(Pa)
 //   flow          S flow_m3ps(p, flow_m3ps)                  of one orifice
@@ -44,12 +47,14 @@ namespace plant_sim::effects {
 
 enum class Site : unsigned {
   command,
+  amplifier,
   drive,
   set_speed,
   lag,
   spool,
   opening,
   lap,
+  edge,
   supply,
   flow,
   leakage,
@@ -62,10 +67,10 @@ enum class Site : unsigned {
 };
 
 inline const char* site_name(Site site) {
-  constexpr const char* kNames[] = {"command", "drive",        "set_speed",    "lag",
-                                    "spool",   "opening",      "lap",          "supply",
-                                    "flow",    "leakage",      "bulk_modulus", "inertia",
-                                    "force",   "dry_friction", "sensor",       "coupling"};
+  constexpr const char* kNames[] = {
+      "command",      "amplifier", "drive", "set_speed",    "lag",    "spool",
+      "opening",      "lap",       "edge",  "supply",       "flow",   "leakage",
+      "bulk_modulus", "inertia",   "force", "dry_friction", "sensor", "coupling"};
   return kNames[static_cast<unsigned>(site)];
 }
 

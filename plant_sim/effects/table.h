@@ -17,6 +17,7 @@
 #include "plant_sim/effects/force_ripple.h"
 #include "plant_sim/effects/friction.h"
 #include "plant_sim/effects/internal_leakage.h"
+#include "plant_sim/effects/lap_leakage.h"
 #include "plant_sim/effects/load_force.h"
 #include "plant_sim/effects/load_spring.h"
 #include "plant_sim/effects/null_bias.h"
@@ -44,6 +45,7 @@ using Effects = EffectSet<S,                  //
                           Deadband,           //
                           FlowAsymmetry,      //
                           Underlap,           //
+                          LapLeakage,         //
                           FlowSaturation,     //
                           SupplyDroop,        //
                           InternalLeakage,    //

@@ -7,6 +7,7 @@ namespace truth {
 namespace {
 
 constexpr double kAtmosphere_Pa = 1.01e5;
+constexpr double kFade_V = 0.3;  ///< overlap that halves the leakage of a lap
 
 double within(double x, double most) { return std::max(-most, std::min(most, x)); }
 
@@ -54,11 +55,17 @@ State Actuator::rate(const State& x, double u_V, double t_s) const {
   const double return_Pa = plant.return_pressure_Pa;
   double in_m3ps = 0.0;
   double out_m3ps = 0.0;
-  if (left_out.kind == LeftOut::Kind::open_centre) {
+  const bool laps_leak = left_out.kind == LeftOut::Kind::leaking_laps;
+  if (laps_leak || left_out.kind == LeftOut::Kind::open_centre) {
     // Merritt (1967), figure 5-1: edges 1 and 2 at one port, 3 and 4 at the other.
     const double lap_m = left_out.size * plant.valve_gain_m_per_V;
-    const double opens = orifice_ * std::max(0.0, lap_m + open_m);
-    const double shuts = orifice_ * std::max(0.0, lap_m - open_m);
+    const double fade_m = kFade_V * plant.valve_gain_m_per_V;
+    const auto edge_m = [&](double ahead_m) {
+      if (laps_leak && ahead_m < 0.0) return lap_m * fade_m / (fade_m - ahead_m);
+      return std::max(0.0, lap_m + ahead_m);
+    };
+    const double opens = orifice_ * edge_m(open_m);
+    const double shuts = orifice_ * edge_m(-open_m);
     in_m3ps = opens * signed_root(supply_Pa - in_Pa) - shuts * signed_root(in_Pa - return_Pa);
     out_m3ps = opens * signed_root(out_Pa - return_Pa) - shuts * signed_root(supply_Pa - out_Pa);
   } else if (open_m >= 0.0) {

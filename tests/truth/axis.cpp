@@ -1,6 +1,5 @@
 #include "tests/truth/axis.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace truth {
@@ -18,8 +17,7 @@ Axis::Axis(const AxisPlant& plant_, const Hidden& hidden_, const LeftOut& left_o
 
 State Axis::rest(double y_m) const { return {y_m, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}; }
 
-State Axis::rate(const State& x, double asked_V, double t_s) const {
-  const double u_V = std::clamp(asked_V, -hidden.drive_limit_V, hidden.drive_limit_V);
+State Axis::rate(const State& x, double u_V, double t_s) const {
   const double v_mps = x[1];
   const double z_m = x[6];
   State r{};

@@ -10,12 +10,13 @@ struct Hidden {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double delay_s = 0.0;
   double lag_s = 0.0;            ///< time constant of an axis' drive
-  double drive_limit_V = kNone;  ///< largest command that an axis' drive follows
+  double drive_limit_V = kNone;  ///< largest command that is followed
   double null_bias_V = 0.0;
   double hysteresis_V = 0.0;  ///< half the width of the play
   double spool_rate_mps = kNone;
-  double deadband_V = 0.0;  ///< half width
-  double corner_V = 0.0;    ///< half the range of commands over which its edges lie
+  double deadband_V = 0.0;   ///< half width
+  double corner_V = 0.0;     ///< half the range of commands over which its edges lie
+  double clearance_V = 0.0;  ///< between its lands and their bore
   double asymmetry_ratio = 0.0;
   double flow_limit_m3ps = kNone;
   double droop_Pa_per_m3ps = 0.0;

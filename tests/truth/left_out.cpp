@@ -266,6 +266,15 @@ const std::vector<LeftOutInfo>& library_law_table() {
        {"flow", "gain"},
        {"u"},
        {"v", "speed", "direction"}},
+      {Kind::leaking_laps,
+       "leaking_laps",
+       "lap_leakage of the library: s at null, V, halved 0.3 V beside it",
+       0.03,
+       0,
+       0,
+       {"flow", "gain"},
+       {"u"},
+       {"v", "speed", "direction"}},
   };
   return table;
 }

@@ -36,6 +36,7 @@ struct LeftOut {
     one_way_saturation,
     elastic_shaft,
     open_centre,
+    leaking_laps,
   };
   Kind kind = Kind::none;
   double size = 0.0;   ///< unit by kind

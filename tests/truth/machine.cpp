@@ -17,10 +17,12 @@ double sign(double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); }
 double signed_root(double x) { return x < 0.0 ? -std::sqrt(-x) : std::sqrt(x); }
 
 double sliding_level_N(const Hidden& hidden, double v_mps) {
-  const double coulomb_N = hidden.coulomb_N * (1.0 + hidden.direction_ratio * sign(v_mps));
-  if (hidden.static_N <= coulomb_N) return coulomb_N;
-  const double ratio = v_mps / hidden.stribeck_mps;
-  return coulomb_N + (hidden.static_N - coulomb_N) * std::exp(-ratio * ratio);
+  double level_N = hidden.coulomb_N;
+  if (hidden.static_N > level_N) {
+    const double ratio = v_mps / hidden.stribeck_mps;
+    level_N += (hidden.static_N - level_N) * std::exp(-ratio * ratio);
+  }
+  return level_N * (1.0 + hidden.direction_ratio * sign(v_mps));
 }
 
 double Machine::bristle_rate_mps(double z_m, double v_mps) const {
@@ -61,6 +63,10 @@ double Machine::uneven(double spool, double per_volt) const {
       return 0.5 * beyond * beyond;
     };
     open = (area(spool + corner) - area(spool - corner)) / (2.0 * corner);
+  }
+  if (const double clearance = hidden.clearance_V * per_volt; clearance > 0.0) {
+    const auto edge = [&](double ahead) { return 0.5 * (ahead + std::hypot(ahead, clearance)); };
+    open = edge(spool - overlap) - edge(-spool - overlap);
   }
   return open * (1.0 + hidden.asymmetry_ratio * sign(open));
 }

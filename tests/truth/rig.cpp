@@ -49,14 +49,14 @@ void Rig::advance(double u_V, double span_s) {
   for (int i = 0; i < count; ++i) {
     const double biased_V = machine_->left_out.command_V(u_V, t_s_) + h.null_bias_V;
     played_V_ = play(played_V_, biased_V, h.hysteresis_V);
+    reached_V_ = std::clamp(played_V_, -h.drive_limit_V, h.drive_limit_V);
     machine_->outside_N = disturber_.force_N(t_s_);
     machine_->outside_Pa = disturber_.pulsation_Pa(t_s_);
-    machine_->step(x, played_V_, t_s_, step_s);
+    machine_->step(x, reached_V_, t_s_, step_s);
     t_s_ += step_s;
     spool_speed_mps.back() = std::max(spool_speed_mps.back(), std::abs(x[5]));
     played_m_ = play(played_m_, x[0], 0.5 * h.backlash_m);
   }
-  reached_V_ = played_V_;
   if (machine_->supply_Pa() > 0.0) {
     least_Pa = std::min({least_Pa, x[2], x[3]});
     greatest_ratio = std::max(greatest_ratio, std::max(x[2], x[3]) / machine_->supply_Pa());

@@ -16,6 +16,7 @@ const std::vector<Parameter>& parameters() {
       {"spool_rate_limit", "rate_mps", &H::spool_rate_mps, 0.02},
       {"deadband", "half_width_V", &H::deadband_V, 0.02},
       {"deadband", "corner_V", &H::corner_V, 0.0},
+      {"deadband", "clearance_V", &H::clearance_V, 0.0},
       {"flow_asymmetry", "asymmetry_ratio", &H::asymmetry_ratio, 0.02},
       {"flow_saturation", "limit_m3ps", &H::flow_limit_m3ps, 0.02},
       {"supply_droop", "droop_Pa_per_m3ps", &H::droop_Pa_per_m3ps, 0.10},
@@ -81,8 +82,8 @@ constexpr double kUneven = 0.01;  ///< asymmetry of the speeds below which there
 
 bool has_place_in_servo(const std::string& effect) {
   static const std::vector<std::string> names{
-      "transport_delay", "null_bias", "valve_hysteresis",    "deadband",
-      "flow_asymmetry",  "backlash",  "encoder_eccentricity"};
+      "transport_delay", "drive_saturation", "null_bias", "valve_hysteresis",
+      "deadband",        "flow_asymmetry",   "backlash",  "encoder_eccentricity"};
   return std::find(names.begin(), names.end(), effect) != names.end();
 }
 

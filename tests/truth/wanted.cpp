@@ -22,9 +22,9 @@ const Names& variants() {
   static const Names names = [] {
     Names found;
     for (const std::string& effect : effects()) {
-      // an axis alone has a drive
-      const bool is_drive = effect.rfind("drive_", 0) == 0;
-      if (effect != "friction" && !is_drive) found.push_back(effect);
+      // the plan of axes draws them
+      const bool is_of_axes = effect == "drive_lag" || effect == "drive_saturation";
+      if (effect != "friction" && !is_of_axes) found.push_back(effect);
     }
     found.insert(found.end(), {"friction_coulomb", "friction_stribeck", "friction_presliding"});
     return found;

@@ -105,7 +105,7 @@ constexpr std::array kServoRecord{
     Word{"flow",
          "record the speed that the drive itself measures, with the motor's current or the chamber "
          "pressures"},
-    Word{"gain", "record the speed that the drive itself measures, and its supply"},
+    Word{"gain", "record the drive's supply"},
     Word{"force", "record the motor's current or the chamber pressures"},
     Word{"measurement", "record the position with a second sensor"},
     Word{"lag", "record the drive's own speed, which shows a lag ahead of it"},
@@ -242,11 +242,11 @@ std::string words_for_sensor(const plant_sim::ModelFile& model,
              : any_at(model, names, "force") || any_at(model, names, "dry_friction")
                  ? "a load cell, or the motor's current, would"
                  : "the motor's current would";
-  } else if (all_at(model, names, {"command", "spool", "opening", "lap"})) {
+  } else if (all_at(model, names, {"command", "amplifier", "spool", "opening", "lap"})) {
     sensor = "the spool position would";
   } else if (all_at(model, names, {"force", "dry_friction", "inertia"})) {
     sensor = "a load cell at the rod would";
-  } else if (all_at(model, names, {"flow", "leakage", "supply", "bulk_modulus"})) {
+  } else if (all_at(model, names, {"edge", "flow", "leakage", "supply", "bulk_modulus"})) {
     sensor = "the chamber pressures and the supply pressure would";
   } else if (any_at(model, names, "sensor")) {
     sensor = "a second position sensor would";

@@ -66,7 +66,7 @@ void locate_laws(const LawSearch& found, const Diagnosis& before, Diagnosis& lea
 /// The site of the laws that may stand where an effect does: what a valve lets through changes with
 /// its opening, its overlap and its supply alike.
 std::string site_of_laws(const std::string& site) {
-  return site == "flow" || site == "supply" || site == "lap" ? "opening" : site;
+  return site == "flow" || site == "supply" || site == "lap" || site == "edge" ? "opening" : site;
 }
 
 /// The only site at which all of the effects act; empty: there is none.

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace estimator::greybox {
 
@@ -34,6 +36,16 @@ TEST(FreeParameter, HasTheSlopeOfItsValue) {
     const double difference = std::abs(p.to_physical(0.7 + h) - p.to_physical(0.7 - h)) / (2.0 * h);
     EXPECT_NEAR(p.slope(0.7), difference, 1e-5 * difference);
   }
+}
+
+TEST(EffectParameters, OfASquareReachAsFarFromTheirTypicalSizeAsOthers) {
+  const auto found = effect_parameters(*plant_sim::find_effect("deadband"), 1);
+  const auto upper = [&](const std::string& name) {
+    const auto p = std::find_if(found.begin(), found.end(),
+                                [&](const FreeParameter& one) { return one.name == name; });
+    return p == found.end() ? 0.0 : p->to_physical(p->upper) / p->unit;
+  };
+  EXPECT_NEAR(upper("deadband.corner_V"), upper("deadband.half_width_V"), 1e-9);
 }
 
 TEST(PlantParameters, CentreOnTheModelFileWithinItsRanges) {

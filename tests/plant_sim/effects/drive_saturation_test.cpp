@@ -1,10 +1,10 @@
-// A drive that gives no more than a limit, against the closed form of a mass that it pushes.
+// A drive that follows no command beyond a limit: an axis against the closed form of a mass that it
+// pushes, other plants against the command that is left.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "plant_sim/library.h"
 #include "tests/plant_sim/support.h"
 
 namespace plant_sim::testing {
@@ -44,15 +44,19 @@ TEST(DriveSaturation, LimitsBeforeTheLag) {
   EXPECT_NEAR(limited->state.v_mps, asked->state.v_mps, 1e-12);
 }
 
-TEST(DriveSaturation, IsForAxesAlone) {
-  const auto& library = effect_library();
-  const auto found = std::find_if(library.begin(), library.end(), [](const EffectInfo& effect) {
-    return effect.name == "drive_saturation";
-  });
-  ASSERT_NE(found, library.end());
-  for (const char* plant : {"velocity_servo", "hydraulic_actuator", "hydraulic_cylinder"}) {
-    const auto& sites = find_plant(plant)->sites;
-    EXPECT_EQ(std::count(sites.begin(), sites.end(), found->sites.front()), 0) << plant;
+template <class Plant>
+class LimitedDrive : public ::testing::Test {};
+using LaggingPlants = ::testing::Types<Servo, Actuator, HydraulicCylinder<double>>;
+TYPED_TEST_SUITE(LimitedDrive, LaggingPlants);
+
+TYPED_TEST(LimitedDrive, ActsAheadOfTheLagOfEveryOtherPlant) {
+  auto limited = at_rest<TypeParam>();
+  auto asked = at_rest<TypeParam>();
+  set_effect(*limited, "drive_saturation", "limit_V", kLimit_V);
+  for (const double u_V : {10.0, -10.0, 0.5}) {
+    hold(*limited, u_V, 0.05);
+    hold(*asked, std::clamp(u_V, -kLimit_V, kLimit_V), 0.05);
+    EXPECT_EQ(limited->state.y_m, asked->state.y_m) << u_V;
   }
 }
 

@@ -178,6 +178,23 @@ TEST(Friction, NeverDrivesTheRod) {
   }
 }
 
+TEST(Friction, ScalesStribecksCurveByTheDirection) {
+  F::Parameters p;
+  p.coulomb_N = 100.0;
+  p.static_N = 160.0;
+  p.stribeck_mps = 0.01;
+  p.direction_ratio = 0.25;
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 0.0), 200.0);
+  EXPECT_DOUBLE_EQ(F::level_N(p, -1.0, 0.0), 120.0);
+  EXPECT_NEAR(F::level_N(p, 1.0, 0.01), 1.25 * (100.0 + 60.0 * std::exp(-1.0)), 1e-9);
+  EXPECT_NEAR(F::level_N(p, -1.0, -0.01), 0.75 * (100.0 + 60.0 * std::exp(-1.0)), 1e-9);
+  // what holds the rod at rest, either way
+  const effects::DryContact<double> pushed{0.0, 0.0, 190.0, 5e4};
+  EXPECT_DOUBLE_EQ(F::friction_N(p, {}, pushed), 190.0);
+  const effects::DryContact<double> pulled{0.0, 0.0, -190.0, 5e4};
+  EXPECT_DOUBLE_EQ(F::friction_N(p, {}, pulled), -120.0);
+}
+
 F::Parameters bristle_with_rise() {
   F::Parameters p;
   p.coulomb_N = 200.0;

@@ -111,6 +111,26 @@ TEST(Deadband, OpensAlongAParabolaWithinARoundedCorner) {
   EXPECT_NEAR(opening(0.5), 0.3, 1e-15);
 }
 
+// Edges of the gap sqrt(e^2 + r^2), of which one opens as the other shuts; at e = 0, E = r / 2.
+TEST(Deadband, OpensByTheGapsThatAClearanceLeaves) {
+  effects::Deadband<double>::Parameters p;
+  p.half_width_V = 0.3;
+  p.clearance_V = 0.4;
+  const auto opening = [&](double command_V) {
+    return effects::Deadband<double>::opening_m(p, 0.5 * command_V, 0.5) / 0.5;
+  };
+  // triangles of 3, 4, 5: at 0.6 the edges are 0.3 open and 0.9 shut, at 0 both 0.3 shut
+  EXPECT_EQ(opening(0.0), 0.0);
+  EXPECT_NEAR(opening(0.6), 0.5 * (0.3 + 0.5) - 0.5 * (std::hypot(0.9, 0.4) - 0.9), 1e-15);
+  EXPECT_NEAR(opening(-0.6), -opening(0.6), 1e-15);
+  EXPECT_NEAR(opening(0.3), 0.2 - 0.5 * (std::hypot(0.6, 0.4) - 0.6), 1e-15);
+  // far away a sharp edge, less what the other one still lets back
+  EXPECT_NEAR(opening(1e4), 1e4 - 0.3, 1e-4);
+  p.clearance_V = 1e-9;
+  EXPECT_NEAR(opening(0.1), 0.0, 1e-15);
+  EXPECT_NEAR(opening(0.7), 0.4, 1e-15);
+}
+
 TEST(FlowAsymmetry, OpensMoreWhenExtendingAndLessWhenRetracting) {
   for (const double u_V : {1.0, -1.0}) {
     auto plant = at_rest();

@@ -47,7 +47,7 @@ TEST(Effects, ListsOneAloneByEitherOfItsNames) {
 
 TEST(Effects, WritesTheSameAsJson) {
   const auto json = nlohmann::json::parse(output({"--json", "-"}));
-  ASSERT_EQ(json["effects"].size(), 25U);
+  ASSERT_EQ(json["effects"].size(), 26U);
   EXPECT_EQ(json["plants"].size(), 4U);
   for (const auto& effect : json["effects"]) {
     EXPECT_FALSE(effect["equation"].get<std::string>().empty());

@@ -58,6 +58,21 @@ TEST(HiddenEffect, ADeadBandIsNamedWithItsRoundedCorner) {
   EXPECT_NEAR(corner->value, 0.03, 1e-3);
 }
 
+TEST(HiddenEffect, ADeadBandIsNamedWithTheClearanceThatOpensIt) {
+  const Judged j = judged(
+      "motion=multisine,length_s=12,deadband.half_width_V=0.2,deadband.clearance_V=0.06", 21);
+  expect_found(j);
+  const auto found = std::find_if(j.diagnosis.parameters.begin(), j.diagnosis.parameters.end(),
+                                  [](const auto& p) { return p.name == "deadband.clearance_V"; });
+  ASSERT_NE(found, j.diagnosis.parameters.end());
+  EXPECT_NEAR(found->value, 0.06, 2e-3);
+}
+
+// An amplifier that clips ahead of a valve is no flow that saturates behind it.
+TEST(HiddenEffect, AnAmplifierThatClipsIsNamedWithItsLimit) {
+  expect_found(judged("motion=fast_steps,length_s=12,drive_saturation.limit_V=1.5", 23));
+}
+
 // The law of four edges stands among those left out: it is in no plan.
 TEST(HiddenEffect, AnUnderlapIsNamedWithItsHalfWidth) {
   const Judged j =
@@ -71,6 +86,24 @@ TEST(HiddenEffect, AnUnderlapIsNamedWithItsHalfWidth) {
                                   [](const auto& p) { return p.name == "underlap.half_width_V"; });
   ASSERT_NE(width, d.parameters.end());
   EXPECT_NEAR(width->value, 0.12, diagnose_test::kStdErrors * width->std_error);
+}
+
+TEST(HiddenEffect, LeakageOfTheLapsIsNamedWithWhatHalvesIt) {
+  const Judged j =
+      judged("motion=multisine,length_s=12,left_out=leaking_laps,left_out.size=0.03", 22);
+  const selection::Diagnosis& d = j.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
+  EXPECT_THAT(d.missing, testing::ElementsAre("lap_leakage")) << said(d);
+  EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m) << said(d);
+  EXPECT_GE(d.rms_before_m, diagnose_test::kVisible * d.noise_floor_m) << said(d);
+  const auto expect = [&](const std::string& name, double truth) {
+    const auto found = std::find_if(d.parameters.begin(), d.parameters.end(),
+                                    [&](const auto& p) { return p.name == name; });
+    ASSERT_NE(found, d.parameters.end()) << name;
+    EXPECT_NEAR(found->value, truth, diagnose_test::kStdErrors * found->std_error) << name;
+  };
+  expect("lap_leakage.opening_V", 0.03);
+  expect("lap_leakage.fade_V", 0.3);
 }
 
 TEST(HiddenEffect, ANullBiasIsNamedWithItsSignOnAMismatchedPlant) {
