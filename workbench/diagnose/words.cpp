@@ -62,6 +62,10 @@ std::string doubt_words(selection::Doubt doubt, bool several) {
     case selection::Doubt::chance:
       return std::string("what ") + (several ? "each" : "it") +
              " gains is so little, or so uneven over the record, that it may be chance";
+    case selection::Doubt::below_noise:
+      return std::string("noise explains the model without ") + (several ? "them" : "it") +
+             ", and what " + (several ? "each" : "it") +
+             " removes is small beside it: the plant's laws may be off by as much";
     case selection::Doubt::rivals:
       return "others do as well";
     case selection::Doubt::remainder:

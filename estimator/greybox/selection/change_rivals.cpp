@@ -58,8 +58,9 @@ std::vector<std::string> polished_rivals_of(const std::vector<ChangeProposal>& p
   std::vector<std::string> rivals;
   const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
   for (const std::size_t i : polished) {
-    if (i != chosen && penalised(stages[i]) <= most)
-      rivals.push_back(proposals[i].score.parameter.name);
+    const std::string& name = proposals[i].score.parameter.name;
+    if (name != proposals[chosen].score.parameter.name && penalised(stages[i]) <= most)
+      rivals.push_back(name);
   }
   for (const std::string& name : before) {
     if (!is_polished(name)) rivals.push_back(name);

@@ -171,10 +171,16 @@ bool add_change(const SearchContext& plain, const std::vector<ChangeProposal>& s
     also(with_course_of(proposals[chosen].score, stages[chosen].model.fitted, proposals[i].score));
   }
   const std::vector<std::string> before = rivals_of(proposals, stages, chosen);
-  const std::vector<std::size_t> near =
-      nearly_as_likely(proposals, stages, chosen, penalised(stage));
+  std::vector<std::size_t> near = nearly_as_likely(proposals, stages, chosen, penalised(stage));
   polish(near, proposals, plain.options.threads, stages);
   chosen = best_of(proposals, stages, near);
+  if (ends_beyond(record, proposals[chosen], stages[chosen])) {
+    near.push_back(
+        also(ramp_throughout(proposals[chosen].score, stages[chosen].model.fitted, record)));
+    polish({near.back()}, proposals, plain.options.threads, stages);
+    const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
+    if (penalised(stages[near.back()]) < most) chosen = near.back();
+  }
   std::vector<std::string> rivals = polished_rivals_of(proposals, stages, near, chosen, before);
   take(proposals[chosen], std::move(stages[chosen]), std::move(rivals), stage, search);
   scores_taken.push_back(proposals[chosen].score);

@@ -21,6 +21,8 @@ constexpr double kMostOfRemainder = 0.5;
 constexpr double kChanceOfBest = 0.01;
 /// Probability of an effect's gain by chance above which it is not established.
 constexpr double kLikelyChance = 0.05;
+/// Share of the noise below which the error that an effect removes is small.
+constexpr double kSmallShare = 0.25;
 /// Squared error that an effect explains over that which remains, above which it is no stand-in.
 constexpr double kBeyondDoubt = 100.0;
 /// The same where what remains enters as the effect does: a square of the speed in place of the
@@ -51,7 +53,7 @@ std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
   }
   if (site == "sensor") return "measurement";
   if (site == "lag") return site;
-  if (site == "command" || site == "drive")
+  if (site == "command" || site == "amplifier" || site == "drive")
     return is_driven_by_force(diagnosis) ? "force" : "command";
   return "flow";
 }
@@ -81,10 +83,19 @@ bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect)
           (where.variable == "time" && effect == "null_bias" && is_same_site(where.site, site)));
 }
 
-/// True where the effect is among those that a step adds, which it joins by " + ".
-bool adds(const SelectionStep& step, const std::string& effect) {
-  const std::string all = " + " + step.added + " + ";
-  return all.find(" + " + effect + " + ") != std::string::npos;
+/// Number of the step that adds an effect, alone or joined to others by " + "; 0: none does.
+std::size_t step_of(const Diagnosis& diagnosis, const std::string& effect) {
+  for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
+    const std::string all = " + " + diagnosis.steps[i].added + " + ";
+    if (all.find(" + " + effect + " + ") != std::string::npos) return i;
+  }
+  return 0;
+}
+
+/// Squared error that a step removed from simulations.
+double removed_m2(const Diagnosis& diagnosis, std::size_t step) {
+  return std::pow(diagnosis.steps[step - 1].validation_rms_m, 2) -
+         std::pow(diagnosis.steps[step].validation_rms_m, 2);
 }
 
 /// Squared error of simulations that an effect explains, over that which remains, with the observer
@@ -96,10 +107,9 @@ double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
   };
   double observed = std::nan("");
   double free_run = std::nan("");
-  for (std::size_t i = 1; i < diagnosis.steps.size() && std::isnan(observed); ++i) {
+  if (const std::size_t i = step_of(diagnosis, effect); i > 0) {
     const SelectionStep& with = diagnosis.steps[i];
     const SelectionStep& without = diagnosis.steps[i - 1];
-    if (!adds(with, effect)) continue;
     observed =
         explained_ratio(without.validation_rms_m, with.validation_rms_m, diagnosis.rms_after_m);
     free_run = explained_ratio(without.free_run_rms_m, with.free_run_rms_m,
@@ -223,18 +233,22 @@ Chance chance_of(const StructureSearch& search, const std::string& effect) {
   return {};
 }
 
+/// True where noise explained the model without the effect, which removed little: it may make up
+/// for any of the plant's laws that the model has not quite right.
+bool is_below_noise(const Diagnosis& diagnosis, const std::string& effect) {
+  const std::size_t i = step_of(diagnosis, effect);
+  return i > 0 &&
+         diagnosis.steps[i - 1].validation_rms_m <= kUnexplained * diagnosis.noise_floor_m &&
+         removed_m2(diagnosis, i) < std::pow(kSmallShare * diagnosis.noise_floor_m, 2);
+}
+
 /// True for an effect beside others that removes less than the noise, where the best of all that
 /// were tried may do so by chance.
 bool may_be_best_by_chance(const Diagnosis& diagnosis, const std::string& effect) {
-  if (diagnosis.by_innovations || diagnosis.missing.size() < 2) return false;
-  for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
-    if (!adds(diagnosis.steps[i], effect)) continue;
-    const double removed_m2 = std::pow(diagnosis.steps[i - 1].validation_rms_m, 2) -
-                              std::pow(diagnosis.steps[i].validation_rms_m, 2);
-    return removed_m2 < std::pow(diagnosis.noise_floor_m, 2) &&
-           chance_of(diagnosis.search, effect).p_best_of_all > kChanceOfBest;
-  }
-  return false;
+  const std::size_t i = step_of(diagnosis, effect);
+  return !diagnosis.by_innovations && diagnosis.missing.size() > 1 && i > 0 &&
+         removed_m2(diagnosis, i) < std::pow(diagnosis.noise_floor_m, 2) &&
+         chance_of(diagnosis.search, effect).p_best_of_all > kChanceOfBest;
 }
 
 /// True where another effect, which gained more than chance does, left clearly less than this one
@@ -314,6 +328,8 @@ const char* to_string(Doubt doubt) {
       return "within_error";
     case Doubt::chance:
       return "chance";
+    case Doubt::below_noise:
+      return "below_noise";
     case Doubt::rivals:
       return "rivals";
     case Doubt::remainder:
@@ -336,6 +352,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
     if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
     if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
+    if (!doubt && !error_remains && is_below_noise(diagnosis, effect)) doubt = Doubt::below_noise;
     if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
       doubt = Doubt::chance;
     }

@@ -19,8 +19,6 @@ constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
 /// Least share of the found effect's gain that a rival brings.
 constexpr double kShareOfGain = 0.5;
-/// Probability of chance below which the held-out data separate the found effect from a rival.
-constexpr double kTold = 1e-3;
 /// Share of the error up to which the difference of two residuals counts as the same motion.
 constexpr double kSameMotion = 0.3;
 

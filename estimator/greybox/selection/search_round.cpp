@@ -99,6 +99,8 @@ Candidate candidate_of(const SearchContext& context, const ModelStage& stage,
   return candidate;
 }
 
+}  // namespace
+
 void sort_by_score(std::vector<Candidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     if (a.fitted_at_all != b.fitted_at_all) return a.fitted_at_all;
@@ -106,8 +108,6 @@ void sort_by_score(std::vector<Candidate>& candidates) {
                            : a.expected_ratio < b.expected_ratio;
   });
 }
-
-}  // namespace
 
 double chance(const SearchContext& context, const FitSummary& earlier, const FitSummary& later) {
   const auto scored = [&](const FitSummary& fitted) {

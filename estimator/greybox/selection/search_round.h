@@ -12,6 +12,8 @@ namespace estimator::greybox::selection {
 inline constexpr int kQuickIterations = 8;
 /// Largest probability of chance of a gain, unless the gain is large.
 inline constexpr double kChance = 0.01;
+/// Probability of chance below which the held-out data tell two effects apart.
+inline constexpr double kTold = 1e-3;
 
 /// The round has no candidates where the linear estimate of none leaves less than `within_m`.
 [[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number,
@@ -26,6 +28,9 @@ inline constexpr double kChance = 0.01;
 /// Fits the best candidates to convergence with their Jacobians; sorts all, best first.
 void refine_best(const SearchContext& context, const ModelStage& stage,
                  std::vector<Candidate>& candidates);
+
+/// Fitted candidates first, by their held-out errors; the others by the linear estimate of theirs.
+void sort_by_score(std::vector<Candidate>& candidates);
 
 /// The candidate with the fewest parameters among those that explain the record as well as the
 /// first, except one that moves the plant far from its expected values.

@@ -25,6 +25,10 @@ namespace {
 /// that explain the record.
 constexpr std::size_t kBeginnings = 3;
 constexpr std::size_t kRivalLaws = 4;
+/// Effects of the first round beside which a law is sought, and the ratio to the best one's error
+/// up to which they may leave.
+constexpr std::size_t kNamed = 2;
+constexpr double kNearBest = 2.0;
 /// Gain of a curve from which on laws are worth their fits.
 constexpr double kMuchMotion_nats = 5.0 * kCurve_nats;
 
@@ -88,8 +92,13 @@ std::optional<SearchBranch> explaining(const SearchContext& context, const Searc
   };
   if (!start.branch.rounds.empty()) {
     const Round& named = start.branch.rounds.front();
-    SearchBranch beside_effect = begun_with(any, named.candidates.front(), named);
-    if (completes(any, beside_effect)) return beside_effect;
+    const double most_m = kNearBest * named.candidates.front().validation_rms_m;
+    for (std::size_t i = 0; i < std::min(kNamed, named.candidates.size()); ++i) {
+      const Candidate& effect = named.candidates[i];
+      if (!effect.fitted_at_all || effect.validation_rms_m > most_m || context.cancelled()) break;
+      SearchBranch beside_effect = begun_with(any, effect, named);
+      if (completes(any, beside_effect)) return beside_effect;
+    }
   }
   const Round& round = single.rounds.front();
   for (std::size_t i = 0; i < std::min(kBeginnings, round.candidates.size()); ++i) {

@@ -9,6 +9,7 @@
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/backward_elimination.h"
 #include "estimator/greybox/selection/command_lead.h"
+#include "estimator/greybox/selection/completed_candidates.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/first_stage.h"
@@ -47,10 +48,7 @@ constexpr double kLargeGain = 0.1;
 /// gain.
 bool take(const SearchContext& context, const Round& round, ModelStage& stage) {
   if (!is_gain(context, stage, round.candidates.front())) return false;
-  stage = with(stage, simplest(context, round.candidates));
-  if (stage.fitted.jacobian.size() == 0) stage.fitted = refit_to_convergence(context, stage.fitted);
-  revive(context, stage.fitted);
-  take_alternative_refinements(context, stage);
+  stage = completed(context, stage, simplest(context, round.candidates));
   return true;
 }
 
@@ -262,6 +260,7 @@ SearchStart start_search(const SearchContext& context) {
 
 void begin_rounds(const SearchContext& context, SearchStart& start) {
   if (extend_branch(context, start.branch, false, 1)) {
+    complete_rivals(context, start.branch);
     // simulations know nothing of a disturbance: beside one, the likelihood has to find the second
     extend_branch(context, start.branch, false, kBeforePairSearch,
                   kNearFloor * context.problem.data.noise_floor_m);

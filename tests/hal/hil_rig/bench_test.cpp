@@ -137,6 +137,8 @@ TEST(Bench, FindsCaseOneOverModbusAsInTheSimulation) {
                      "; over Modbus " + found.timeline(name, kPeriod_s) + "\n";
     }
   }
+  EXPECT_FALSE(changes(found, "supply_pressure").empty())
+      << found.timeline("supply_pressure", kPeriod_s);
   const double jitter_s = command_jitter_s(result.err);
   ASSERT_GE(jitter_s, 0.0) << result.err;
   if (!differences.empty() && jitter_s > kLargestJitter_s) {

@@ -31,7 +31,7 @@ TEST(PairStart, FindsTwoThatPassForTwoOthersOneByOne) {
 
 TEST(PairStart, StaysWhereNoPairLeavesFarLess) {
   const SearchContext context = diagnose_test::context_of(
-      "motion=multisine,length_s=20,left_out=cubic_damping,left_out.size=100000", 82);
+      "motion=multisine,length_s=20,left_out=cubic_damping,left_out.size=250000", 82);
   SearchStart start = first_two_effects(context);
   const std::vector<std::string> before = start.branch.stage.added;
   const double before_m = start.branch.stage.fitted.validation_rms_m;
