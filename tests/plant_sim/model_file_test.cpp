@@ -150,7 +150,8 @@ TEST(ModelFile, RefusesAnEffectWhoseSiteThePlantLacks) {
   } catch (const config::schema::ConfigError& error) {
     EXPECT_STREQ(error.what(),
                  "x.toml: [effects.supply_droop]: supply_droop acts on supply, which "
-                 "velocity_servo does not have; allowed: effects of its sites command, set_speed, "
+                 "velocity_servo does not have; allowed: effects of its sites command, amplifier, "
+                 "set_speed, "
                  "lag, opening, "
                  "lap, sensor");
   }

@@ -139,7 +139,7 @@ TEST_F(AddTest, RefusesBadValuesInOneLine) {
   EXPECT_THAT(refusal({model, "null_bias", "offset_V=1x"}, 2), HasSubstr("parameter=number"));
   EXPECT_THAT(refusal({model, "null_bias", "offset_V"}, 2), HasSubstr("parameter=number"));
   EXPECT_THAT(refusal({kModels + "force_driven_axis.toml", "deadband"}),
-              HasSubstr("does not have; allowed: effects of its sites command, drive"));
+              HasSubstr("does not have; allowed: effects of its sites command, amplifier, drive"));
   EXPECT_THAT(refusal({"/nowhere/model.toml", "friction"}), HasSubstr("/nowhere/model.toml"));
 }
 
