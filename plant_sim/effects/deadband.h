@@ -9,9 +9,9 @@
 // c   half the range of commands over which it opens gradually, V: rounded edges and small notches,
 //     as edges spread evenly over the range. Up to w a parabola joins both sides; beyond, flow
 //     passes at null too.
-// r   in the place of c: width over which clearance opens an edge, V; an edge just closed is open
-// by
-//     r / 2. Net flow alone: what both edges of a port let through is the effect lap_leakage.
+// r   in the place of c: width over which clearance opens an edge, V, which is open by r / 2 when
+//     it has just closed. Net flow alone: what both edges of a port let through is the effect
+//     lap_leakage.
 // Sources: overlapped four-way valve, Merritt, Hydraulic Control Systems (1967), section 5-2; E is
 // the hyperbola between the asymptotes of an edge that closes on a gap.
 #pragma once
