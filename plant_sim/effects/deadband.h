@@ -1,11 +1,14 @@
-// Overlapped spool: nothing opens until the lands have passed the ports.
+// Overlapped spool: nothing opens until the lands have passed the ports; or an amplifier that
+// answers no small command.
 //
+//   command = u -+ a w outside, 0 inside |u| <= a w                           a > 0
 //   opening = xv -+ Kv w outside, 0 inside |xv| <= Kv w                       c = 0
 //   opening = (A(xv + Kv c) - A(xv - Kv c)) / (2 Kv c),  A(x) = max(|x| - Kv w, 0)^2 / 2   c > 0
 //   opening = E(xv) - E(-xv),  E(x) = (x - Kv w + sqrt((x - Kv w)^2 + (Kv r)^2)) / 2        r > 0
 //
-// xv  spool position, m          Kv  spool position per volt, m/V
-// w   half width of the band as a command, V
+// xv  spool position, m          Kv  spool position per volt, m/V          u  command, V
+// w   half width of the band as a command, V; where a > 0, (1 - a) w of it is the spool's
+// a   share of the band that lies ahead of the valve's lag
 // c   half the range of commands over which it opens gradually, V: rounded edges and small notches,
 //     as edges spread evenly over the range. Up to w a parabola joins both sides; beyond, flow
 //     passes at null too.
@@ -28,14 +31,16 @@ template <class S>
 struct Deadband {
   static constexpr const char* kName = "deadband";
   static constexpr const char* kEquation =
-      "opening = xv -+ Kv half_width outside, 0 inside, corners rounded over corner or clearance";
-  static constexpr std::array kSites = {Site::opening};
+      "opening = xv -+ Kv half_width outside, 0 inside, corners rounded over corner or clearance; "
+      "a share ahead of it of the command";
+  static constexpr std::array kSites = {Site::amplifier, Site::opening};
   static constexpr bool kDissipative = false;
 
   struct Parameters {
     S half_width_V = 0.0;
     S corner_V = 0.0;
     S clearance_V = 0.0;
+    S ahead_ratio = 0.0;
 
     template <class V>
     void visit(V&& v) {
@@ -50,12 +55,21 @@ struct Deadband {
                       "corner_V",
                       0.0, 10.0, 0.01, 0.0, 0.0, 3, 1, 2},
         clearance_V);
+      v(ParameterInfo{"ahead_ratio",
+                      "share of the band that lies in the amplifier, ahead of the valve's lag", 0.0,
+                      1.0, 0.5, 0.0, 0.0, 4, 1},
+        ahead_ratio);
     }
   };
   struct Memory {};
 
+  static S amplified_V(const Parameters& p, const S& u_V) {
+    const S band_V = p.ahead_ratio * p.half_width_V;
+    return u_V - clamp(u_V, -band_V, band_V);
+  }
+
   static S opening_m(const Parameters& p, const S& x_m, const S& gain_m_per_V) {
-    const S band_m = p.half_width_V * gain_m_per_V;
+    const S band_m = (S(1.0) - p.ahead_ratio) * p.half_width_V * gain_m_per_V;
     const S sharp_m = x_m - clamp(x_m, -band_m, band_m);
     const S corner_m = p.corner_V * gain_m_per_V;
     const S clearance_m = p.clearance_V * gain_m_per_V;

@@ -127,10 +127,10 @@ TEST(Completion, OffersModelsAndRecordsWhereTheyBelong) {
 TEST(Completion, OffersEffectsAndParameters) {
   EXPECT_THAT(offered("spoolwatch add m.toml fric"), ElementsAre("friction"));
   EXPECT_THAT(offered("spoolwatch add m.toml deadband "),
-              ElementsAre("clearance_V=", "corner_V=", "half_width_V="));
+              ElementsAre("ahead_ratio=", "clearance_V=", "corner_V=", "half_width_V="));
   EXPECT_THAT(offered("spoolwatch compare m.toml r.csv --set effects.deadb"),
-              ElementsAre("effects.deadband.clearance_V=", "effects.deadband.corner_V=",
-                          "effects.deadband.half_width_V="));
+              ElementsAre("effects.deadband.ahead_ratio=", "effects.deadband.clearance_V=",
+                          "effects.deadband.corner_V=", "effects.deadband.half_width_V="));
   EXPECT_THAT(offered("spoolwatch isolate --parameters mass"), ElementsAre("mass_kg"));
 }
 

@@ -17,6 +17,7 @@ struct Hidden {
   double deadband_V = 0.0;   ///< half width
   double corner_V = 0.0;     ///< half the range of commands over which its edges lie
   double clearance_V = 0.0;  ///< between its lands and their bore
+  double ahead_ratio = 0.0;  ///< share of the dead band that is the amplifier's
   double asymmetry_ratio = 0.0;
   double flow_limit_m3ps = kNone;
   double droop_Pa_per_m3ps = 0.0;

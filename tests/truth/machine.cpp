@@ -53,7 +53,7 @@ double Machine::resisting_N(double y_m, double v_mps, double t_s) const {
 }
 
 double Machine::uneven(double spool, double per_volt) const {
-  const double overlap = hidden.deadband_V * per_volt;
+  const double overlap = (1.0 - hidden.ahead_ratio) * hidden.deadband_V * per_volt;
   double open = spool;
   if (overlap > 0.0) open = std::abs(spool) <= overlap ? 0.0 : spool - overlap * sign(spool);
   if (const double corner = hidden.corner_V * per_volt; corner > 0.0) {

@@ -50,6 +50,8 @@ void Rig::advance(double u_V, double span_s) {
     const double biased_V = machine_->left_out.command_V(u_V, t_s_) + h.null_bias_V;
     played_V_ = play(played_V_, biased_V, h.hysteresis_V);
     reached_V_ = std::clamp(played_V_, -h.drive_limit_V, h.drive_limit_V);
+    const double band_V = h.ahead_ratio * h.deadband_V;
+    reached_V_ -= std::clamp(reached_V_, -band_V, band_V);
     machine_->outside_N = disturber_.force_N(t_s_);
     machine_->outside_Pa = disturber_.pulsation_Pa(t_s_);
     machine_->step(x, reached_V_, t_s_, step_s);

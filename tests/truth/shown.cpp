@@ -17,6 +17,7 @@ const std::vector<Parameter>& parameters() {
       {"deadband", "half_width_V", &H::deadband_V, 0.02},
       {"deadband", "corner_V", &H::corner_V, 0.0},
       {"deadband", "clearance_V", &H::clearance_V, 0.0},
+      {"deadband", "ahead_ratio", &H::ahead_ratio, 0.0},
       {"flow_asymmetry", "asymmetry_ratio", &H::asymmetry_ratio, 0.02},
       {"flow_saturation", "limit_m3ps", &H::flow_limit_m3ps, 0.02},
       {"supply_droop", "droop_Pa_per_m3ps", &H::droop_Pa_per_m3ps, 0.10},

@@ -23,8 +23,10 @@ namespace estimator::greybox::selection {
 [[nodiscard]] ParameterSubset without_least(const FitSummary& fitted,
                                             const std::vector<std::string>& added);
 
-/// Takes such a refinement where the stage leaves more than noise, but not far more, and less with
-/// it.
+/// Takes such a refinement where the stage leaves less with it, unless it leaves far more than
+/// noise.
+void try_alternative_refinements(const SearchContext& context, ModelStage& stage);
+/// The same where noise does not explain the stage.
 void take_alternative_refinements(const SearchContext& context, ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

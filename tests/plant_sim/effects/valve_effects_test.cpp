@@ -88,6 +88,20 @@ TEST(Deadband, OpensNothingInsideAndShiftsTheCommandOutside) {
   EXPECT_NEAR(plant->state.v_mps, -steady_speed_mps(plant->parameters, 2.79e-5), 1e-9);
 }
 
+TEST(Deadband, LetsTheSpoolFollowLessWhereAShareLiesAheadOfIt) {
+  auto plant = at_rest();
+  set_effect(*plant, "deadband", "half_width_V", 0.2);
+  set_effect(*plant, "deadband", "ahead_ratio", 0.75);
+  hold(*plant, 0.14, 1.0);
+  EXPECT_EQ(plant->state.spool_m, 0.0);
+  hold(*plant, 0.19, 1.0);
+  EXPECT_NEAR(plant->state.spool_m, 0.04 * 2.79e-5, 1e-12);
+  EXPECT_EQ(plant->state.y_m, 0.305);
+  hold(*plant, -1.2, 4.0);
+  EXPECT_NEAR(plant->state.spool_m, -1.05 * 2.79e-5, 1e-12);
+  EXPECT_NEAR(plant->state.v_mps, -steady_speed_mps(plant->parameters, 2.79e-5), 1e-9);
+}
+
 TEST(Deadband, OpensAlongAParabolaWithinARoundedCorner) {
   effects::Deadband<double>::Parameters p;
   const auto opening = [&](double command_V) {

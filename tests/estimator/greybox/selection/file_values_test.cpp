@@ -64,11 +64,7 @@ TEST(FileValues, AnEndThatTheUserSetStays) {
 
 /// The truth generator's single rod in the product's words, its supply known to 3 %.
 DiagnosisProblem single_rod(const std::string& spec) {
-  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
-                                                     "/config/models/single_rod_cylinder.toml");
-  *model.value("cap_area_m2") = 20e-4;
-  *model.value("rod_side_area_m2") = 12e-4;
-  *model.value("stroke_m") = 0.61;
+  plant_sim::ModelFile model = diagnose_test::single_rod();
   *model.value("damping_N_s_per_m") = 3000.0;
   const truth::Record truth = truth::simulate(truth::parse_case(spec, 41));
   DiagnosisProblem problem =

@@ -23,6 +23,16 @@ inline plant_sim::ModelFile thesis() {
   return plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml");
 }
 
+/// The data sheet of the truth generator's single rod.
+inline plant_sim::ModelFile single_rod() {
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/single_rod_cylinder.toml");
+  *model.value("cap_area_m2") = 20e-4;
+  *model.value("rod_side_area_m2") = 12e-4;
+  *model.value("stroke_m") = 0.61;
+  return model;
+}
+
 inline greybox::Dataset dataset_of(const truth::Record& truth) {
   config::record::Record record;
   record.name = "truth";
