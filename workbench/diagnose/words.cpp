@@ -11,6 +11,7 @@
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
 #include "workbench/diagnose/change_words.h"
+#include "workbench/diagnose/doubt_words.h"
 #include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/error_words.h"
 #include "workbench/diagnose/place_words.h"
@@ -50,52 +51,6 @@ std::string interruption_words(const DiagnosisReport& outcome) {
   if (!outcome.out_of_time) return "Interrupted: " + rest + ".";
   return fmt::format("Out of time after the {:g} s of --within: {}; a longer limit may decide.",
                      outcome.prepared->within_s, rest);
-}
-
-std::string doubt_words(selection::Doubt doubt, bool several) {
-  switch (doubt) {
-    case selection::Doubt::at_bound:
-      return several ? "the size of each is at the bound of what it can be"
-                     : "its size is at the bound of what it can be";
-    case selection::Doubt::within_error:
-      return several ? "the size of each is within its error" : "its size is within its error";
-    case selection::Doubt::chance:
-      return std::string("what ") + (several ? "each" : "it") +
-             " gains is so little, or so uneven over the record, that it may be chance";
-    case selection::Doubt::below_noise:
-      return std::string("noise explains the model without ") + (several ? "them" : "it") +
-             ", and what " + (several ? "each" : "it") +
-             " removes is small beside it: the plant's laws may be off by as much";
-    case selection::Doubt::rivals:
-      return "others do as well";
-    case selection::Doubt::remainder:
-      return std::string("what remains unexplained is no smaller than what ") +
-             (several ? "each" : "it") + " explains";
-    case selection::Doubt::interrupted:
-      return "not everything was tried";
-    case selection::Doubt::stand_in:
-      break;
-  }
-  return several ? "they may stand in for another law: what remains enters as they do, or several "
-                   "share it"
-                 : "may stand in for another law: what remains enters as it does, or several share "
-                   "it";
-}
-
-/// "backlash (its size is within its error); null_bias and friction (others do as well)".
-std::string possible_words(const selection::Diagnosis& d) {
-  std::vector<std::pair<selection::Doubt, std::vector<std::string>>> doubts;
-  for (const selection::PossibleEffect& one : d.possible) {
-    auto same = std::find_if(doubts.begin(), doubts.end(),
-                             [&](const auto& doubt) { return doubt.first == one.why; });
-    if (same == doubts.end()) same = doubts.insert(doubts.end(), {one.why, {}});
-    same->second.push_back(name_words(d, one.effect));
-  }
-  const auto text = [](const auto& doubt) {
-    return config::schema::listed(doubt.second) + " (" +
-           doubt_words(doubt.first, doubt.second.size() > 1) + ")";
-  };
-  return config::schema::joined_by(doubts, text, "; ");
 }
 
 std::string refused_words(const selection::RefusedModel& model, const selection::Diagnosis& d) {
@@ -245,7 +200,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (outcome.resonance) out.push_back(present::resonance_words(*outcome.resonance));
   if (!d.possible.empty()) {
-    out.push_back("Not established: " + possible_words(d) + ".");
+    for (std::string& text : doubt_words(d)) out.push_back(std::move(text));
   }
   for (const selection::RefusedModel& model : d.search.refused) {
     out.push_back(refused_words(model, d));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
@@ -81,9 +82,12 @@ std::vector<ParameterSubset> alternative_refinements(const SearchContext& contex
 }
 
 void take_alternative_refinements(const SearchContext& context, ModelStage& stage) {
+  if (!is_explained(context, stage)) try_alternative_refinements(context, stage);
+}
+
+void try_alternative_refinements(const SearchContext& context, ModelStage& stage) {
   const double left_m = stage.fitted.validation_rms_m;
-  if (is_explained(context, stage) || context.cancelled() ||
-      left_m > kFarFromFloor_ratio * context.problem.data.noise_floor_m) {
+  if (context.cancelled() || left_m > kFarFromFloor_ratio * context.problem.data.noise_floor_m) {
     return;
   }
   const std::vector<ParameterSubset> others = alternative_refinements(context, stage);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/further_refinements.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"

@@ -25,6 +25,14 @@ void replace(const SearchContext& context, const ModelStage& before, const FitSu
   candidate.p_value = chance(context, before.fitted, fitted);
 }
 
+/// Another refinement of what was taken, where held-out data show that it leaves less.
+void take_likelier_refinement(const SearchContext& context, ModelStage& stage) {
+  ModelStage refined = stage;
+  try_alternative_refinements(context, refined);
+  if (!context.cancelled() && chance(context, stage.fitted, refined.fitted) < kChance)
+    stage = std::move(refined);
+}
+
 }  // namespace
 
 ModelStage completed(const SearchContext& context, const ModelStage& stage,
@@ -38,11 +46,13 @@ ModelStage completed(const SearchContext& context, const ModelStage& stage,
 
 void complete_rivals(const SearchContext& context, SearchBranch& branch) {
   const std::vector<std::string> taken = branch.stage.added;
-  const double taken_m = branch.stage.fitted.validation_rms_m;
+  const double floor_m = context.problem.data.noise_floor_m;
   if (taken.size() != 1 || branch.rounds.size() != 1 || !is_explained(context, branch.stage) ||
-      taken_m <= kAtFloor * context.problem.data.noise_floor_m) {
+      branch.stage.fitted.validation_rms_m <= kAtFloor * floor_m) {
     return;
   }
+  take_likelier_refinement(context, branch.stage);
+  const double taken_m = branch.stage.fitted.validation_rms_m;
   Round& round = branch.rounds.front();
   std::size_t tried = 0;
   for (Candidate& candidate : round.candidates) {

@@ -11,8 +11,9 @@ namespace estimator::greybox::selection {
 [[nodiscard]] ModelStage completed(const SearchContext& context, const ModelStage& stage,
                                    const Candidate& candidate);
 
-/// Completes the fits of the next best effects of a branch's only round where its effect leaves
-/// more than noise does; the best takes its place where held-out data show that it leaves less.
+/// Where the effect of a branch's only round leaves more than noise does: tries its other
+/// refinements, and completes the fits of the next best effects; what leaves less by held-out data
+/// takes its place.
 void complete_rivals(const SearchContext& context, SearchBranch& branch);
 
 }  // namespace estimator::greybox::selection

@@ -194,6 +194,13 @@ void locate_load(const InnovationSearch& innovations, std::vector<Localisation>&
   }
 }
 
+/// The larger one of the errors of samples that score and that are fitted: what happens once may
+/// lie in either.
+double whole_rms_m(const SearchContext& search, const Diagnosis& result) {
+  return std::max(result.rms_after_m,
+                  fitted_rms_m(search.problem.data, result.search.final.fitted));
+}
+
 /// True where simulations had found other effects that leave far less, on held-out data, of a rod
 /// that oil holds in place: a random force does not choose between them so.
 bool is_disputed(const SearchContext& search, const InnovationSearch& innovations,
@@ -277,12 +284,13 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   const bool physics =
       innovations.physics_missing() || is_disputed(search, innovations, result) ||
       (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
-                                                  result.disturbance, result.rms_after_m));
+                                                  result.disturbance, whole_rms_m(search, result)));
   result.loses_motion = !physics && loses_motion(search, innovations, result.disturbance);
   if (result.disturbance) limit(*result.disturbance, result.rms_after_m);
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;
+  result.undriven = innovations.undriven;
   if (physics) {
     // the noise model passes for what is missing: it must not weigh what the values have to explain
     result.disturbance.reset();

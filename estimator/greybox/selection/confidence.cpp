@@ -1,6 +1,7 @@
 #include "estimator/greybox/selection/confidence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -290,6 +291,17 @@ bool is_another_plant(const Diagnosis& diagnosis) {
          (at_bound == count || (error_remains && at_bound > 2 && 2 * at_bound > count));
 }
 
+/// True where several of the plant's parameters had to be moved to their bounds: effects beside
+/// them may share with them what another law does.
+bool is_strained(const Diagnosis& diagnosis) {
+  constexpr std::ptrdiff_t kSeveral = 2;
+  const auto is_bent = [](const ParameterValue& p) {
+    return p.name.find('.') == std::string::npos && p.at_bound && p.value != 0.0;
+  };
+  const auto& all = diagnosis.parameters;
+  return std::count_if(all.begin(), all.end(), is_bent) >= kSeveral;
+}
+
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
 std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
@@ -321,25 +333,11 @@ bool is_clear_of_remainder(const Diagnosis& diagnosis, const std::string& effect
 }
 
 const char* to_string(Doubt doubt) {
-  switch (doubt) {
-    case Doubt::at_bound:
-      return "at_bound";
-    case Doubt::within_error:
-      return "within_error";
-    case Doubt::chance:
-      return "chance";
-    case Doubt::below_noise:
-      return "below_noise";
-    case Doubt::rivals:
-      return "rivals";
-    case Doubt::remainder:
-      return "remainder";
-    case Doubt::interrupted:
-      return "interrupted";
-    case Doubt::stand_in:
-      break;
-  }
-  return "stand_in";
+  static constexpr std::array kNames = {"at_bound",    "within_error", "chance", "undriven",
+                                        "strained",    "below_noise",  "rivals", "remainder",
+                                        "interrupted", "stand_in"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Doubt::stand_in) + 1);
+  return kNames[static_cast<std::size_t>(doubt)];
 }
 
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
@@ -352,6 +350,8 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
     if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
     if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
+    if (!doubt && diagnosis.undriven.contains(effect)) doubt = Doubt::undriven;
+    if (!doubt && !error_remains && is_strained(diagnosis)) doubt = Doubt::strained;
     if (!doubt && !error_remains && is_below_noise(diagnosis, effect)) doubt = Doubt::below_noise;
     if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
       doubt = Doubt::chance;
@@ -368,7 +368,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   std::vector<PossibleEffect> possible;
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     std::optional<Doubt> doubt = doubts[i];
-    if (!doubt && error_remains && diagnosis.search.interrupted) doubt = Doubt::interrupted;
+    if (!doubt && diagnosis.search.interrupted) doubt = Doubt::interrupted;
     if (!doubt && error_remains && diagnosis.fits_another_plant()) doubt = Doubt::stand_in;
     if (!doubt && error_remains && clear >= kStandIn &&
         !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {

@@ -25,6 +25,8 @@ enum class Doubt {
   at_bound,      ///< its size is the largest or smallest allowed: it stands for something else
   within_error,  ///< its size is below two standard errors, or has none
   chance,        ///< what it gains differs so much over the record that it may be chance
+  undriven,      ///< the motion hardly shows it; how the rig answers what disturbs it does
+  strained,      ///< beside it several of the plant's parameters end at their bounds
   below_noise,   ///< it removes little beside a noise that explains the model without it
   rivals,        ///< others do as well, and an error remains
   remainder,     ///< the unexplained error is no smaller than the error that the effect explains

@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/cross_validation.h"
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
 
@@ -28,6 +29,10 @@ Halves halves_of(const FitDataset& data) {
   }
   return {greybox::fit_dataset(first, second), greybox::fit_dataset(second, first)};
 }
+
+/// Ratio of the fitted samples' error to the noise floor above which noise does not explain them:
+/// what happens once, between samples that score, is seen there alone.
+constexpr double kFittedToo = 1.5;
 
 }  // namespace
 
@@ -84,8 +89,24 @@ bool CrossValidation::holds(bool explained, const ParameterSubset& plain,
   return with_m.first < enough * without_m.first && with_m.second < enough * without_m.second;
 }
 
+double fitted_rms_m(const FitDataset& data, const FitSummary& fitted) {
+  const Eigen::Index samples = fitted.residual_m.size();
+  if (samples == 0 || samples != data.size()) return fitted.training_rms_m;
+  Eigen::VectorXd weights = data.training_mask;
+  const auto block = static_cast<Eigen::Index>(std::lround(kBlock_s / data.sample_time_s));
+  for (const std::size_t start : data.starts) {
+    const auto from = static_cast<Eigen::Index>(start);
+    weights.segment(from, std::min(block, samples - from)).setZero();
+  }
+  const double count = weights.sum();
+  return count > 0.0 ? std::sqrt(fitted.residual_m.cwiseAbs2().dot(weights) / count) : 0.0;
+}
+
 bool is_explained(const SearchContext& context, const ModelStage& stage) {
-  return stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
+  const FitDataset& data = context.problem.data;
+  const bool fitted_too =
+      data.has_holdouts() || !(fitted_rms_m(data, stage.fitted) > kFittedToo * data.noise_floor_m);
+  return stage.fitted.validation_rms_m <= kUnexplained * data.noise_floor_m && fitted_too;
 }
 
 }  // namespace estimator::greybox::selection

@@ -40,7 +40,12 @@ class CrossValidation {
   std::map<Key, Errors> known_;
 };
 
-/// True when noise explains the stage's held-out error.
+/// Error of the fitted samples from kBlock_s after each record's start on, where what the rig began
+/// with has settled.
+[[nodiscard]] double fitted_rms_m(const FitDataset& data, const FitSummary& fitted);
+
+/// True when noise explains the stage's held-out error, and of a single record roughly that of the
+/// fitted samples.
 [[nodiscard]] bool is_explained(const SearchContext& context, const ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,7 @@ struct Diagnosis {
   /// By innovations: what the absence of each effect would cost, and the gain of the best curve
   /// over a variable of the motion.
   std::map<std::string, double> gains_nats;
+  std::set<std::string> undriven;               ///< as InnovationSearch::undriven
   std::map<std::string, double> without_rms_m;  ///< held-out error of the model without each effect
   double curve_nats = 0.0;
   double innovations = 0.0;  ///< their number

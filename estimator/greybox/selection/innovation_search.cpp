@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/confidence.h"
+#include "estimator/greybox/selection/driven_evidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/resonance_or_line.h"
 #include "estimator/greybox/selection/rig_scale.h"
@@ -167,6 +168,16 @@ bool stand_in_for_law(const InnovationStage& stage, double inexact_nats) {
   return stage.model.added.size() >= kStandIn && leaves_much_physics(stage, inexact_nats);
 }
 
+/// Notes the effects whose gains the motion does not show.
+void note_undriven(const SearchContext& context, InnovationSearch& search,
+                   const InnovationStage& final) {
+  for (const std::string& effect : final.model.added) {
+    const auto gain = search.gains_nats.find(effect);
+    if (gain == search.gains_nats.end() || context.cancelled()) continue;
+    if (!is_driven(context, final, effect, gain->second)) search.undriven.insert(effect);
+  }
+}
+
 void note_gains(InnovationSearch& search, const InnovationStage& final) {
   const std::set<std::string> added(final.model.added.begin(), final.model.added.end());
   for (const InnovationRound& round : search.rounds) {
@@ -291,6 +302,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   }
   search.inexact_nats = inexact_nats(context, search, stage);
   note_gains(search, stage);
+  note_undriven(context, search, stage);
   search.final = std::move(stage);
   weigh_remainder(context, search);
   return search;

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,8 @@ struct InnovationSearch {
   std::map<std::string, InnovationRivals> rivals;
   /// Nats that the absence of each effect would cost; where not known, its gain when it was added.
   std::map<std::string, double> gains_nats;
+  /// Effects that gain by how the rig answers what disturbs it, and hardly by the motion.
+  std::set<std::string> undriven;
   double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion
   double inexact_nats = 0.0;  ///< gains that inexact models of what was explained may owe
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/greybox/selection/trial_sizes.h"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/model_refinements.h"
 #include "estimator/parallel.h"
 #include "estimator/residual/diebold_mariano.h"

@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/selection/alternative_refinements.h"
 #include "estimator/greybox/selection/backward_elimination.h"
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/completed_candidates.h"
 #include "estimator/greybox/selection/confidence.h"
@@ -42,7 +43,6 @@ constexpr double kNearFloor = 5.0;
 /// Share of the error of two effects, taken one after another, that a pair leaves which is taken in
 /// their place though a disturbance keeps it from the noise.
 constexpr double kPairLeaves = 0.25;
-constexpr double kLargeGain = 0.1;
 
 /// Takes the round's first candidate, or one as good with fewer parameters; false when it is no
 /// gain.
@@ -213,33 +213,6 @@ const char* to_string(Refusal why) {
       break;
   }
   return "unlikely";
-}
-
-double worthwhile_at(const SearchContext& context, double validation_rms_m) {
-  if (!floor_shows_lead(context.problem.data)) return kWorthwhileInSlowLogs;
-  return validation_rms_m < kUnexplained * context.problem.data.noise_floor_m ? kWorthwhileInNoise
-                                                                              : kWorthwhile;
-}
-
-bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
-  // between the samples of a slow log the command is not known: that error may be all there is
-  if (!floor_shows_lead(context.problem.data) && is_explained(context, stage)) return false;
-  const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
-  const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
-  const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
-  const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // gain that chance gives this number of parameters over the independent samples
-  const Eigen::VectorXd& fitted = context.problem.data.training_mask;
-  const double by_chance =
-      kPerParameter_nats *
-      static_cast<double>(candidate.fitted.parameters.size() - stage.fitted.parameters.size()) *
-      correlation_factor(candidate.fitted.residual_m, fitted) / fitted.sum();
-  // not chance: better on the validation samples throughout, or, where noise does not explain the
-  // stage, equally better on the training samples
-  const bool fits_better = fit_gain > enough + by_chance && !is_explained(context, stage);
-  return candidate.fitted_at_all && gain > enough &&
-         !leaves_its_range(candidate.fitted, stage.fitted.parameters.size()) &&
-         (gain > kLargeGain || candidate.p_value < kChance || fits_better);
 }
 
 SearchStart fit_as_given(const SearchContext& context) {

@@ -31,9 +31,6 @@ inline constexpr double kUnexplained = 1.15;
 /// Ratio of held-out errors within which rivals explain the record about as well as the best.
 inline constexpr double kRivals = 0.05;
 
-/// The applicable one of the limits at a held-out error.
-[[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
-
 struct Candidate {
   std::vector<std::string> effects;  ///< one, a pair, or those of a model that is taken whole
   double expected_ratio = 1.0;       ///< by the screening (ScreeningResult); 1 for pairs
@@ -42,11 +39,6 @@ struct Candidate {
   double p_value = 1.0;  ///< probability that the gain over the stage is chance
   bool fitted_at_all = false;
 };
-
-/// True where a candidate's gain over the stage is worthwhile and not chance. Where noise explains
-/// the stage, held-out data decide alone: a fit follows noise.
-[[nodiscard]] bool is_gain(const SearchContext& context, const ModelStage& stage,
-                           const Candidate& candidate);
 
 struct Round {
   ModelStage before;

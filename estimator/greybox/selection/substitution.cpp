@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
 

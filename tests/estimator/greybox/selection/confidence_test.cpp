@@ -143,6 +143,31 @@ TEST(Confidence, WhatDriftsIsNoOffset) {
   EXPECT_THAT(named(d), ElementsAre("null_bias stand_in"));
 }
 
+TEST(Confidence, WhereNoErrorRemainsNoEffectIsEstablishedBesideSeveralParametersAtTheirBounds) {
+  Diagnosis d;
+  d.verdict = Verdict::missing;
+  d.missing = {"internal_leakage"};
+  d.parameters = {{"mass_kg", 52.3, 0.4, false},
+                  {"bulk_modulus_Pa", 9.3e8, std::nan(""), true},
+                  {"supply_pressure_Pa", 6.3e6, 1e5, false},
+                  {"internal_leakage.conductance_m3ps_per_Pa", 5e-11, 1e-12, false}};
+  EXPECT_THAT(named(d), IsEmpty());
+  d.parameters[2].at_bound = true;
+  EXPECT_THAT(named(d), ElementsAre("internal_leakage strained"));
+  weigh_doubts(d);
+  EXPECT_EQ(d.verdict, Verdict::undetermined);
+}
+
+TEST(Confidence, AnEffectThatTheMotionHardlyShowsIsNotEstablished) {
+  Diagnosis d;
+  d.verdict = Verdict::missing;
+  d.missing = {"second_mass"};
+  d.parameters = {{"second_mass.mass_ratio", 0.0158, 1e-4, false}};
+  EXPECT_THAT(named(d), IsEmpty());
+  d.undriven = {"second_mass"};
+  EXPECT_THAT(named(d), ElementsAre("second_mass undriven"));
+}
+
 TEST(Confidence, NothingIsMissingForSureWhereNoEffectIsEstablished) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "estimator/greybox/selection/backward_elimination.h"
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
@@ -46,17 +47,20 @@ TEST(StructureSearch, TakesAGainOfItsFitOnlyWhereNoiseDoesNotExplainTheStage) {
   Candidate candidate;
   candidate.effects = {"null_bias"};
   candidate.fitted = stage.fitted;
-  candidate.fitted.training_rms_m = 0.95 * stage.fitted.training_rms_m;
   candidate.fitted_at_all = true;
+  const auto leave = [&](double floors) {
+    const double left_m = floors * context.problem.data.noise_floor_m;
+    stage.fitted.training_rms_m = stage.fitted.validation_rms_m = left_m;
+    stage.fitted.residual_m.setConstant(left_m);
+    candidate.fitted.training_rms_m = candidate.validation_rms_m = 0.95 * left_m;
+  };
   candidate.p_value = 0.1;
   for (const double floors : {1.0, 3.0}) {
-    stage.fitted.validation_rms_m = floors * context.problem.data.noise_floor_m;
-    candidate.validation_rms_m = 0.95 * stage.fitted.validation_rms_m;
+    leave(floors);
     EXPECT_EQ(is_gain(context, stage, candidate), floors > 1.0) << floors;
   }
   candidate.p_value = 0.001;
-  stage.fitted.validation_rms_m = context.problem.data.noise_floor_m;
-  candidate.validation_rms_m = 0.95 * stage.fitted.validation_rms_m;
+  leave(1.0);
   EXPECT_TRUE(is_gain(context, stage, candidate));
 }
 
