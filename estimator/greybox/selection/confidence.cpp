@@ -291,15 +291,16 @@ bool is_another_plant(const Diagnosis& diagnosis) {
          (at_bound == count || (error_remains && at_bound > 2 && 2 * at_bound > count));
 }
 
-/// True where several of the plant's parameters had to be moved to their bounds: effects beside
-/// them may share with them what another law does.
+/// True where several of the plant's parameters had to be moved to their bounds, and more than the
+/// noise is left: effects beside them may share with them what another law does.
 bool is_strained(const Diagnosis& diagnosis) {
-  constexpr std::ptrdiff_t kSeveral = 2;
+  constexpr double kAtNoise = 1.05;
   const auto is_bent = [](const ParameterValue& p) {
     return p.name.find('.') == std::string::npos && p.at_bound && p.value != 0.0;
   };
   const auto& all = diagnosis.parameters;
-  return std::count_if(all.begin(), all.end(), is_bent) >= kSeveral;
+  return diagnosis.rms_after_m > kAtNoise * diagnosis.floor_m() &&
+         std::count_if(all.begin(), all.end(), is_bent) > 1;
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
@@ -368,7 +369,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   std::vector<PossibleEffect> possible;
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     std::optional<Doubt> doubt = doubts[i];
-    if (!doubt && diagnosis.search.interrupted) doubt = Doubt::interrupted;
+    if (!doubt && error_remains && diagnosis.search.interrupted) doubt = Doubt::interrupted;
     if (!doubt && error_remains && diagnosis.fits_another_plant()) doubt = Doubt::stand_in;
     if (!doubt && error_remains && clear >= kStandIn &&
         !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {

@@ -151,9 +151,14 @@ TEST(Confidence, WhereNoErrorRemainsNoEffectIsEstablishedBesideSeveralParameters
                   {"bulk_modulus_Pa", 9.3e8, std::nan(""), true},
                   {"supply_pressure_Pa", 6.3e6, 1e5, false},
                   {"internal_leakage.conductance_m3ps_per_Pa", 5e-11, 1e-12, false}};
+  d.noise_floor_m = 2e-6;
+  d.rms_after_m = 2.2e-6;
   EXPECT_THAT(named(d), IsEmpty());
   d.parameters[2].at_bound = true;
   EXPECT_THAT(named(d), ElementsAre("internal_leakage strained"));
+  d.rms_after_m = 2.08e-6;
+  EXPECT_THAT(named(d), IsEmpty());
+  d.rms_after_m = 2.2e-6;
   weigh_doubts(d);
   EXPECT_EQ(d.verdict, Verdict::undetermined);
 }
