@@ -33,7 +33,7 @@ struct Deadband {
   static constexpr const char* kEquation =
       "opening = xv -+ Kv half_width outside, 0 inside, corners rounded over corner or clearance; "
       "a share ahead of it of the command";
-  static constexpr std::array kSites = {Site::amplifier, Site::opening};
+  static constexpr std::array kSites = {Site::opening, Site::amplifier};
   static constexpr bool kDissipative = false;
 
   struct Parameters {

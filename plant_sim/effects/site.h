@@ -1,6 +1,7 @@
 // Places where an effect can act. An effect has, for each site in its kSites, the member function
-// named here; a plant calls those of every active effect where its equations have that place, and
-// lists in its own kSites which places it has. An effect fits a plant that has all of its sites.
+// named here, its main site first; a plant calls those of every active effect where its equations
+// have that place, and lists in its own kSites which places it has. An effect fits a plant that has
+// all of its sites.
 //
 //   command       S command_V(p, memory, u_V)                once per step, may remember
 //   amplifier     S amplified_V(p, u_V)                      command that is followed

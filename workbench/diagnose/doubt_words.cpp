@@ -20,9 +20,10 @@ std::string reason_words(selection::Doubt doubt, bool several) {
       return std::string("what ") + (several ? "each" : "it") +
              " gains is so little, or so uneven over the record, that it may be chance";
     case selection::Doubt::undriven:
-      return std::string("how the rig answers what disturbs it speaks for ") +
-             (several ? "them" : "it") +
-             ", the motion hardly does: a disturbance of another spectrum would look the same";
+      return std::string("the rig's response to disturbances speaks for ") +
+             (several ? "them, their" : "it, its") +
+             " commanded motion hardly does; a disturbance with another spectrum would look the "
+             "same";
     case selection::Doubt::strained:
       return std::string("several of the plant's parameters end at their bounds beside ") +
              (several ? "them: they" : "it: it") + " may stand in for another law";
@@ -73,12 +74,11 @@ std::string otherwise_words(const selection::Diagnosis& d) {
     if (without.at_bound[i] != 0) at_bound.push_back(without.parameters[i].name);
   }
   if (at_bound.empty()) return "";
-  return "Without " + name_words(d, d.possible.front().effect) + ", " +
-         config::schema::listed(at_bound) +
-         (at_bound.size() == 1 ? " ends at its bound: it is missing, or the file is wrong "
-                                 "about this value."
-                               : " end at their bounds: it is missing, or the file is wrong "
-                                 "about these values.");
+  const std::string effect = name_words(d, d.possible.front().effect);
+  return "Without " + effect + ", " + config::schema::listed(at_bound) +
+         (at_bound.size() == 1 ? " ends at its bound" : " end at their bounds") + ": either " +
+         effect + " is missing, or the file is wrong about " +
+         (at_bound.size() == 1 ? at_bound.front() : "these values") + ".";
 }
 
 }  // namespace

@@ -92,7 +92,14 @@ std::string approximation_words(const selection::Diagnosis& d) {
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {
-  const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
+  // what happens once may lie in samples that no held-out error sees
+  const bool in_fitted = d.rms_after_m <= selection::kUnexplained * d.floor_m() &&
+                         d.fitted_rms_m > selection::kFittedToo * d.floor_m();
+  const std::string rest =
+      in_fitted ? "an error of " + config::units::length_words(d.fitted_rms_m) +
+                      " remains in the samples that are fitted, " +
+                      config::units::times_words(d.fitted_rms_m / d.floor_m()) + " times the floor"
+                : "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
   if (d.search.interrupted) {
     return "Not decided: " +
            (d.missing.empty() ? "" : "found so far " + names_words(d, d.missing) + "; ") + rest +

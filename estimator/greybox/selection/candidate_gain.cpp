@@ -15,16 +15,13 @@ constexpr double kLargeGain = 0.1;
 /// moved for: a parameter at its bound costs 9.
 constexpr double kRelief = 12.0;
 
-/// True where the model without effects needs parameters at their bounds, and the candidate leaves
-/// no more with none of them there.
-bool relieves(const ModelStage& stage, const Candidate& candidate) {
+/// True where noise explains the model without effects, but with parameters at their bounds, and
+/// the candidate leaves no more with none of them there.
+bool relieves(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
   const std::size_t plant = stage.fitted.parameters.size();
-  const auto at_bound = [&](const FitSummary& fitted) {
-    const auto end = static_cast<std::ptrdiff_t>(std::min(plant, fitted.at_bound.size()));
-    return std::any_of(fitted.at_bound.begin(), fitted.at_bound.begin() + end,
-                       [](int bound) { return bound != 0; });
-  };
-  return stage.added.empty() && at_bound(stage.fitted) && !at_bound(candidate.fitted) &&
+  return stage.added.empty() && candidate.effects.size() == 1 && is_explained(context, stage) &&
+         ends_at_bound(stage.fitted, plant) && candidate.fitted.at_bound.size() >= plant &&
+         !ends_at_bound(candidate.fitted, plant) &&
          candidate.validation_rms_m <= stage.fitted.validation_rms_m &&
          prior_cost(candidate.fitted) < prior_cost(stage.fitted) - kRelief;
 }
@@ -55,7 +52,7 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const bool fits_better = fit_gain > enough + by_chance && !is_explained(context, stage);
   const bool better =
       gain > enough && (gain > kLargeGain || candidate.p_value < kChance || fits_better);
-  return candidate.fitted_at_all && (better || relieves(stage, candidate)) &&
+  return candidate.fitted_at_all && (better || relieves(context, stage, candidate)) &&
          !leaves_its_range(candidate.fitted, stage.fitted.parameters.size());
 }
 

@@ -1,4 +1,4 @@
-// What a candidate must gain to be taken.
+// Gain on held-out data from which on a candidate is taken.
 #pragma once
 
 #include "estimator/greybox/selection/structure_search.h"
@@ -9,8 +9,8 @@ namespace estimator::greybox::selection {
 [[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 /// True where a candidate's gain over the stage is worthwhile and not chance. Where noise explains
-/// the stage, held-out data decide alone: a fit follows noise; or the candidate brings a plant back
-/// from its bounds that had been moved there.
+/// the stage, held-out data decide alone: a fit follows noise; or the candidate brings
+/// parameters of the plant back that end at their bounds without it.
 [[nodiscard]] bool is_gain(const SearchContext& context, const ModelStage& stage,
                            const Candidate& candidate);
 

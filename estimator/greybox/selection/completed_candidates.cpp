@@ -25,12 +25,12 @@ void replace(const SearchContext& context, const ModelStage& before, const FitSu
   candidate.p_value = chance(context, before.fitted, fitted);
 }
 
-/// Another refinement of what was taken, where held-out data show that it leaves less.
+/// Takes another refinement of the effect where held-out data show that it leaves less.
 void take_likelier_refinement(const SearchContext& context, ModelStage& stage) {
   ModelStage refined = stage;
   try_alternative_refinements(context, refined);
-  if (!context.cancelled() && chance(context, stage.fitted, refined.fitted) < kChance)
-    stage = std::move(refined);
+  const bool likelier = chance(context, stage.fitted, refined.fitted) < kChance;
+  if (likelier && !context.cancelled()) stage = std::move(refined);
 }
 
 }  // namespace
@@ -53,6 +53,7 @@ void complete_rivals(const SearchContext& context, SearchBranch& branch) {
   }
   take_likelier_refinement(context, branch.stage);
   const double taken_m = branch.stage.fitted.validation_rms_m;
+  if (taken_m <= kAtFloor * floor_m) return;
   Round& round = branch.rounds.front();
   std::size_t tried = 0;
   for (Candidate& candidate : round.candidates) {

@@ -84,11 +84,12 @@ bool are_all_within_errors(const Diagnosis& result) {
                      [](const auto& one) { return one.why == Doubt::within_error; });
 }
 
-void take_errors(Diagnosis& result) {
+void take_errors(const SearchContext& search, Diagnosis& result) {
   result.nominal_rms_m = result.search.nominal_rms_m;
   list_steps(result);
   result.rms_before_m = result.steps.front().validation_rms_m;
   result.rms_after_m = result.search.final.fitted.validation_rms_m;
+  result.fitted_rms_m = fitted_rms_m(search.problem.data, result.search.final.fitted);
   result.missing = result.search.final.added;
 }
 
@@ -136,12 +137,13 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
     refit_to_whole(context, result.search);
     result.searched_s = length_s(search.problem.data);
   }
-  take_errors(result);
+  take_errors(search, result);
   const ModelStage& final = result.search.final;
   result.repetition =
       repeated_motion((result.searched_s ? context : search).problem.data, final.fitted.residual_m);
   fit_final_parameters(context, result);
-  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
+  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m ||
+      result.fitted_rms_m > kFittedToo * result.noise_floor_m) {
     result.verdict = Verdict::unexplained;
     list_free_runs(search, result);
     const bool begun = !result.search.rounds.empty();
@@ -194,13 +196,6 @@ void locate_load(const InnovationSearch& innovations, std::vector<Localisation>&
   }
 }
 
-/// The larger one of the errors of samples that score and that are fitted: what happens once may
-/// lie in either.
-double whole_rms_m(const SearchContext& search, const Diagnosis& result) {
-  return std::max(result.rms_after_m,
-                  fitted_rms_m(search.problem.data, result.search.final.fitted));
-}
-
 /// True where simulations had found other effects that leave far less, on held-out data, of a rod
 /// that oil holds in place: a random force does not choose between them so.
 bool is_disputed(const SearchContext& search, const InnovationSearch& innovations,
@@ -240,6 +235,7 @@ std::optional<InnovationSearch> without_idle_effect(const SearchContext& search,
     rest.without.clear();
     rest.rivals.clear();
     rest.gains_nats.erase(added[i]);
+    rest.undriven.erase(added[i]);
     weigh_remainder(search, rest);
     return rest;
   }
@@ -276,15 +272,16 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.search.nominal_rms_m = nominal_m;
   result.search.preview_s = preview_s;
   result.search.interrupted = search.cancelled();
-  take_errors(result);
+  take_errors(search, result);
   result.repetition = repeated_motion(search.problem.data, result.search.final.fitted.residual_m);
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   result.noise_floor_m = sensor_noise_m(search, innovations, result.floor_assumed);
   const bool physics =
       innovations.physics_missing() || is_disputed(search, innovations, result) ||
-      (!context.cancelled() && !noise_is_credible(search, innovations, result.noise_floor_m,
-                                                  result.disturbance, whole_rms_m(search, result)));
+      (!context.cancelled() &&
+       !noise_is_credible(search, innovations, result.noise_floor_m, result.disturbance,
+                          whole_rms_m(search, result.search.final.fitted)));
   result.loses_motion = !physics && loses_motion(search, innovations, result.disturbance);
   if (result.disturbance) limit(*result.disturbance, result.rms_after_m);
   result.curve_nats = innovations.curve_nats;

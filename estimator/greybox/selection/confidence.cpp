@@ -1,7 +1,6 @@
 #include "estimator/greybox/selection/confidence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -331,14 +330,6 @@ double explained_ratio(double gain_nats, double curve_nats, double innovations) 
 bool is_clear_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   return !(likely_ratio(diagnosis, effect) < kClearOfRemainder) ||
          simulated_ratio(diagnosis, effect) >= kClearOfRemainder;
-}
-
-const char* to_string(Doubt doubt) {
-  static constexpr std::array kNames = {"at_bound",    "within_error", "chance", "undriven",
-                                        "strained",    "below_noise",  "rivals", "remainder",
-                                        "interrupted", "stand_in"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Doubt::stand_in) + 1);
-  return kNames[static_cast<std::size_t>(doubt)];
 }
 
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {

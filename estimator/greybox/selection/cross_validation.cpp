@@ -1,5 +1,8 @@
 #include "estimator/greybox/selection/cross_validation.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
@@ -29,10 +32,6 @@ Halves halves_of(const FitDataset& data) {
   }
   return {greybox::fit_dataset(first, second), greybox::fit_dataset(second, first)};
 }
-
-/// Ratio of the fitted samples' error to the noise floor above which noise does not explain them:
-/// what happens once, between samples that score, is seen there alone.
-constexpr double kFittedToo = 1.5;
 
 }  // namespace
 
@@ -90,23 +89,30 @@ bool CrossValidation::holds(bool explained, const ParameterSubset& plain,
 }
 
 double fitted_rms_m(const FitDataset& data, const FitSummary& fitted) {
-  const Eigen::Index samples = fitted.residual_m.size();
-  if (samples == 0 || samples != data.size()) return fitted.training_rms_m;
-  Eigen::VectorXd weights = data.training_mask;
-  const auto block = static_cast<Eigen::Index>(std::lround(kBlock_s / data.sample_time_s));
-  for (const std::size_t start : data.starts) {
-    const auto from = static_cast<Eigen::Index>(start);
-    weights.segment(from, std::min(block, samples - from)).setZero();
+  if (data.has_holdouts()) return fitted.validation_rms_m;
+  if (fitted.residual_m.size() != data.size() || data.size() == 0) return fitted.training_rms_m;
+  double sum_m2 = 0.0;
+  double counted = 0.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const Dataset& record = data.records[r];
+    const auto settling = static_cast<std::size_t>(std::lround(kBlock_s / record.sample_time_s));
+    for (std::size_t k = settling; k < record.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(data.starts[r] + k);
+      sum_m2 += data.training_mask[row] * fitted.residual_m[row] * fitted.residual_m[row];
+      counted += data.training_mask[row];
+    }
   }
-  const double count = weights.sum();
-  return count > 0.0 ? std::sqrt(fitted.residual_m.cwiseAbs2().dot(weights) / count) : 0.0;
+  return counted > 0.0 ? std::sqrt(sum_m2 / counted) : 0.0;
+}
+
+double whole_rms_m(const SearchContext& context, const FitSummary& fitted) {
+  return std::max(fitted.validation_rms_m, fitted_rms_m(context.problem.data, fitted));
 }
 
 bool is_explained(const SearchContext& context, const ModelStage& stage) {
   const FitDataset& data = context.problem.data;
-  const bool fitted_too =
-      data.has_holdouts() || !(fitted_rms_m(data, stage.fitted) > kFittedToo * data.noise_floor_m);
-  return stage.fitted.validation_rms_m <= kUnexplained * data.noise_floor_m && fitted_too;
+  return stage.fitted.validation_rms_m <= kUnexplained * data.noise_floor_m &&
+         fitted_rms_m(data, stage.fitted) <= kFittedToo * data.noise_floor_m;
 }
 
 }  // namespace estimator::greybox::selection

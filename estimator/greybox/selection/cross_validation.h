@@ -40,12 +40,15 @@ class CrossValidation {
   std::map<Key, Errors> known_;
 };
 
-/// Error of the fitted samples from kBlock_s after each record's start on, where what the rig began
-/// with has settled.
+/// Error of the samples that are fitted, from kBlock_s after each record's start on, where what the
+/// rig began with has settled: an event between samples that score is seen there alone. Where whole
+/// records are held out, these judge: their error. 0 of records that are no longer.
 [[nodiscard]] double fitted_rms_m(const FitDataset& data, const FitSummary& fitted);
 
-/// True when noise explains the stage's held-out error, and of a single record roughly that of the
-/// fitted samples.
+/// The larger one of the held-out error and fitted_rms_m().
+[[nodiscard]] double whole_rms_m(const SearchContext& context, const FitSummary& fitted);
+
+/// True when noise explains the stage's held-out error, and roughly that of fitted_rms_m().
 [[nodiscard]] bool is_explained(const SearchContext& context, const ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -132,7 +132,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   const bool understood =
       innovations.load_sets_in() ||
       (!innovations.physics_missing() &&
-       noise_is_credible(search, innovations, sensor_m, disturbance, held.validation_rms_m));
+       noise_is_credible(search, innovations, sensor_m, disturbance, whole_rms_m(search, held)));
   const double floor_m = std::hypot(sensor_m, disturbance ? disturbance->rms_m : 0.0);
   const double expected_m =
       std::max((1.0 + kClearlyWorse) * first.fitted.validation_rms_m,
@@ -146,7 +146,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     }
     return;
   }
-  if (held.validation_rms_m <= kUnexplained * search.problem.data.noise_floor_m) {
+  if (is_explained(search, {innovations.final.model.added, held})) {
     if (prefer_law(search, first, innovations, result)) return;
     StructureSearch found = structure_search_of(search, first, innovations);
     found.nominal_rms_m = result.search.nominal_rms_m;

@@ -96,6 +96,7 @@ struct Diagnosis {
   /// By innovations: what the absence of each effect would cost, and the gain of the best curve
   /// over a variable of the motion.
   std::map<std::string, double> gains_nats;
+  double fitted_rms_m = 0.0;                    ///< fitted_rms_m() of the final model
   std::set<std::string> undriven;               ///< as InnovationSearch::undriven
   std::map<std::string, double> without_rms_m;  ///< held-out error of the model without each effect
   double curve_nats = 0.0;

@@ -5,9 +5,10 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Share of its gain that an effect must have in the motion that the command makes. One that is
-/// there has more than all of it, because the other parameters do not make up for its absence.
+/// Share of its gain that an effect must have in the motion that the command makes. A real effect
+/// exceeds its gain there, because the other parameters, held, do not make up for its absence.
 constexpr double kDriven = 0.1;
+constexpr const char* kSecondMass = "second_mass";
 
 /// Scaled innovations of a context's predictor on the readings of a model's free run.
 Eigen::VectorXd innovations_of(SearchContext context, const FitSummary& predictor,
@@ -18,9 +19,7 @@ Eigen::VectorXd innovations_of(SearchContext context, const FitSummary& predicto
     ObserverSimulation simulation(context.problem.model, plain, model.parameters, 0.0);
     Eigen::MatrixXd residuals_m;
     simulation.residuals(model.start, residuals_m);
-    for (std::size_t k = 0; k < record.size(); ++k) {
-      if (record.valid[k] != 0) record.y_m[k] -= residuals_m(static_cast<Eigen::Index>(k), 0);
-    }
+    record.y_m = simulation.predicted().reading_m;
   }
   return simulated(context, predictor).residual_m;
 }
@@ -34,8 +33,9 @@ double driven_nats(const SearchContext& plain, const InnovationStage& stage,
       subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
   disturbance::NoiseModel noise;
   noise.noise = stage.noise.noise;
-  const auto linear =
-      disturbance::linearise(plain.problem.model, plain.problem.data, rest.parameters, rest.start);
+  if (effect != kSecondMass) noise.force_place = stage.noise.force_place;
+  const auto linear = disturbance::linearise(plain.problem.model, plain.problem.data,
+                                             rest.parameters, rest.start, noise.force_place);
   SearchContext context = plain;
   context.problem.data = disturbance::innovation_data(plain.problem.model, plain.problem.data,
                                                       rest.parameters, rest.start, linear, noise)

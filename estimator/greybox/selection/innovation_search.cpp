@@ -173,7 +173,8 @@ void note_undriven(const SearchContext& context, InnovationSearch& search,
                    const InnovationStage& final) {
   for (const std::string& effect : final.model.added) {
     const auto gain = search.gains_nats.find(effect);
-    if (gain == search.gains_nats.end() || context.cancelled()) continue;
+    if (gain == search.gains_nats.end() || !std::isfinite(gain->second) || context.cancelled())
+      continue;
     if (!is_driven(context, final, effect, gain->second)) search.undriven.insert(effect);
   }
 }

@@ -69,12 +69,12 @@ std::string site_of_laws(const std::string& site) {
   return site == "flow" || site == "supply" || site == "lap" || site == "edge" ? "opening" : site;
 }
 
-/// The only site at which all of the effects act; empty: there is none.
+/// The main site of all of the effects; empty: they have several.
 std::string shared_site(const std::vector<std::string>& effects) {
   std::string site;
   for (const std::string& name : effects) {
     const plant_sim::EffectInfo* effect = plant_sim::find_effect(name);
-    if (effect == nullptr || effect->sites.size() != 1) return "";
+    if (effect == nullptr || effect->sites.empty()) return "";
     if (!site.empty() && effect->sites.front() != site) return "";
     site = effect->sites.front();
   }

@@ -28,6 +28,12 @@ constexpr double kRevivedShare = 1e-3;
 
 }  // namespace
 
+bool ends_at_bound(const FitSummary& fitted, std::size_t count) {
+  const auto end = static_cast<std::ptrdiff_t>(std::min(count, fitted.at_bound.size()));
+  return std::any_of(fitted.at_bound.begin(), fitted.at_bound.begin() + end,
+                     [](int bound) { return bound != 0; });
+}
+
 bool leaves_its_range(const FitSummary& fitted, std::size_t first) {
   return leaves_its_range(fitted, first, fitted.parameters.size());
 }

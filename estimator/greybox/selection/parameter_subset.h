@@ -39,6 +39,9 @@ template <class Keep>
   return result;
 }
 
+/// True when one of the first `count` parameters, those of the plant, ended at a bound.
+[[nodiscard]] bool ends_at_bound(const FitSummary& fitted, std::size_t count);
+
 /// True when an effect's size, among the parameters from `first` on, is at the bound of what it can
 /// be: it then stands for something else. Phases and sizes of 0 do not count, a resonance
 /// without damping does: there is none.

@@ -34,13 +34,9 @@ constexpr double kMuchMotion_nats = 5.0 * kCurve_nats;
 
 /// True where a parameter of the plant, or an effect, ends at its bound: it makes up for what is
 /// missing.
-bool is_strained(const ModelStage& held, std::size_t plant_parameters) {
-  const FitSummary& fitted = held.fitted;
-  const auto plant_end = fitted.at_bound.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                       plant_parameters, fitted.at_bound.size()));
-  return !held.added.empty() &&
-         (std::any_of(fitted.at_bound.begin(), plant_end, [](int at) { return at != 0; }) ||
-          leaves_its_range(fitted, plant_parameters));
+bool makes_up(const ModelStage& held, std::size_t plant_parameters) {
+  return !held.added.empty() && (ends_at_bound(held.fitted, plant_parameters) ||
+                                 leaves_its_range(held.fitted, plant_parameters));
 }
 
 /// True where a curve over the motion gains far more than a disturbance that bends a fit lets it,
@@ -131,9 +127,8 @@ bool explain_by_laws(const SearchContext& context, const SearchStart& start, Dia
   const ModelStage& held = start.branch.stage;
   // parameters may differ between records before a law is missing
   if (context.problem.effects_only || context.problem.data.fitted_records != 1) return false;
-  const bool strained =
-      is_explained(context, held) && is_strained(held, first.fitted.parameters.size());
-  if (!strained && !leaves_much_motion(context, held)) return false;
+  const bool bent = is_explained(context, held) && makes_up(held, first.fitted.parameters.size());
+  if (!bent && !leaves_much_motion(context, held)) return false;
   const std::vector<Law> laws = laws_of(context, held);
   std::optional<SearchBranch> branch = explaining(context, start, laws);
   if (!branch || context.cancelled()) return false;

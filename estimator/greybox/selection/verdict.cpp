@@ -1,4 +1,5 @@
-// A diagnosis read as a whole: its verdict in words of the JSON, what is established, its floors.
+// A diagnosis read as a whole: its verdict and doubts in words of the JSON, what is established,
+// its floors.
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +25,32 @@ const char* to_string(Verdict verdict) {
       break;
   }
   return "not_excited";
+}
+
+const char* to_string(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::at_bound:
+      return "at_bound";
+    case Doubt::within_error:
+      return "within_error";
+    case Doubt::chance:
+      return "chance";
+    case Doubt::undriven:
+      return "undriven";
+    case Doubt::strained:
+      return "strained";
+    case Doubt::below_noise:
+      return "below_noise";
+    case Doubt::rivals:
+      return "rivals";
+    case Doubt::remainder:
+      return "remainder";
+    case Doubt::interrupted:
+      return "interrupted";
+    case Doubt::stand_in:
+      break;
+  }
+  return "stand_in";
 }
 
 std::vector<std::string> Diagnosis::established() const {

@@ -10,6 +10,12 @@
 namespace estimator::greybox::selection {
 namespace {
 
+/// Some ten standard errors of the half width, and of the share where it is at its bound, or
+/// between.
+constexpr double kWidth_V = 1e-3;
+constexpr double kWhole_ratio = 0.01;
+constexpr double kShare_ratio = 0.05;
+
 Diagnosis found_in(const std::string& band, std::size_t seed) {
   const truth::Record truth = truth::simulate(
       truth::parse_case("rig=single_rod,motion=multisine,length_s=12," + band, seed));
@@ -30,8 +36,8 @@ TEST(AmplifierDeadband, IsNamedAsTheWholeBand) {
   const Diagnosis d = found_in("deadband.half_width_V=0.4,deadband.ahead_ratio=1", 643);
   EXPECT_EQ(d.verdict, Verdict::missing);
   EXPECT_THAT(d.missing, testing::ElementsAre("deadband"));
-  EXPECT_NEAR(value_of(d, "deadband.half_width_V").value, 0.4, 1e-3);
-  EXPECT_NEAR(value_of(d, "deadband.ahead_ratio").value, 1.0, 0.01);
+  EXPECT_NEAR(value_of(d, "deadband.half_width_V").value, 0.4, kWidth_V);
+  EXPECT_NEAR(value_of(d, "deadband.ahead_ratio").value, 1.0, kWhole_ratio);
 }
 
 TEST(AmplifierDeadband, IsNamedAsItsShareBesideOverlap) {
@@ -39,7 +45,7 @@ TEST(AmplifierDeadband, IsNamedAsItsShareBesideOverlap) {
   EXPECT_EQ(d.verdict, Verdict::missing);
   EXPECT_THAT(d.missing, testing::ElementsAre("deadband"));
   const ParameterValue share = value_of(d, "deadband.ahead_ratio");
-  EXPECT_NEAR(share.value, 0.4, 0.05);
+  EXPECT_NEAR(share.value, 0.4, kShare_ratio);
   EXPECT_NEAR(share.value, 0.4, 3.0 * share.std_error);
 }
 

@@ -1,5 +1,5 @@
-// What the motion that the command makes tells of an effect: nothing of a second mass so light that
-// it shapes the answer to a disturbance alone. Truth: tests/truth.
+// The motion that the command makes tells nothing of a second mass so light that it shapes the
+// answer to a disturbance alone. Truth: tests/truth.
 #include "estimator/greybox/selection/driven_evidence.h"
 
 #include <gtest/gtest.h>

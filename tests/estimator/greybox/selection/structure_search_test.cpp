@@ -64,6 +64,41 @@ TEST(StructureSearch, TakesAGainOfItsFitOnlyWhereNoiseDoesNotExplainTheStage) {
   EXPECT_TRUE(is_gain(context, stage, candidate));
 }
 
+// At the noise, with the plant at a bound of its prior, 3 standard deviations off at a cost of 9
+// each.
+TEST(StructureSearch, TakesAnEffectThatBringsThePlantBackFromItsBounds) {
+  const SearchContext context = servo_context({.rate_mps = with_offset(0.0)});
+  ModelStage stage = fit_as_given(context).first;
+  const double floor_m = context.problem.data.noise_floor_m;
+  stage.fitted.residual_m.setConstant(floor_m);
+  stage.fitted.validation_rms_m = floor_m;
+  Candidate candidate;
+  candidate.effects = {"null_bias"};
+  candidate.fitted = stage.fitted;
+  candidate.fitted_at_all = true;
+  candidate.validation_rms_m = 0.999 * floor_m;
+  const FreeParameter& p = stage.fitted.parameters.front();
+  stage.fitted.theta[0] = p.prior_mean + 4.0 * p.prior_sd;
+  candidate.fitted.theta[0] = p.prior_mean;
+  stage.fitted.at_bound.assign(stage.fitted.parameters.size(), 0);
+  candidate.fitted.at_bound = stage.fitted.at_bound;
+  EXPECT_FALSE(is_gain(context, stage, candidate)) << "within its bounds";
+  stage.fitted.at_bound[0] = 1;
+  EXPECT_TRUE(is_gain(context, stage, candidate));
+  Candidate other = candidate;
+  other.fitted.at_bound[0] = -1;
+  EXPECT_FALSE(is_gain(context, stage, other)) << "still at a bound";
+  other = candidate;
+  other.fitted.theta = stage.fitted.theta;
+  EXPECT_FALSE(is_gain(context, stage, other)) << "as far off";
+  other = candidate;
+  other.validation_rms_m = 1.001 * floor_m;
+  EXPECT_FALSE(is_gain(context, stage, other)) << "leaves more";
+  stage.fitted.validation_rms_m = 1.2 * floor_m;
+  candidate.validation_rms_m = 1.199 * floor_m;
+  EXPECT_FALSE(is_gain(context, stage, candidate)) << "noise does not explain the stage";
+}
+
 TEST(StructureSearch, FindsTwoEffectsOneAfterTheOther) {
   const SearchContext context = servo_context({.rate_mps = with_offset_and_band(0.06, 0.1)});
   const StructureSearch search =
