@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -35,7 +36,8 @@ PipelineConfig read(const std::string& text) {
 
 class LearnedBandsFile : public testing::Test {
  protected:
-  LearnedBandsFile() : folder_(testing::TempDir() + "/spoolwatch_bands") {
+  LearnedBandsFile()
+      : folder_(testing::TempDir() + "/spoolwatch_bands_" + std::to_string(getpid())) {
     std::filesystem::create_directories(folder_);
     learned_.sample_time_s = 0.005;
     learned_.source = "healthy.csv";
