@@ -19,6 +19,8 @@ constexpr std::size_t kLargestRivalGroup = 3;
 constexpr std::size_t kRivalFinalists = 3;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
+/// Share of the taken effect's gain that another of its round has gained to be tried again.
+constexpr double kRunnerUp = 0.5;
 /// Share of what the effect gains by which the lag of a rival that is polished may be more:
 /// parameters that another model has bent come back together with the noise model, turn by turn.
 constexpr double kWorthPolishing = 0.1;
@@ -27,10 +29,9 @@ ParameterSubset without_effect(const InnovationStage& stage, const std::string& 
   return subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
 }
 
-/// The stage with other parameters in the place of an effect's, or none.
-InnovationStage exchanged(const SearchContext& plain, const InnovationStage& stage,
-                          const std::string& effect, const std::string& other,
-                          const ParameterSubset& own) {
+/// The stage's model with other parameters, not fitted, in the place of an effect's, or none.
+ModelStage in_place_of(const InnovationStage& stage, const std::string& effect,
+                       const std::string& other, const ParameterSubset& own) {
   ModelStage model;
   for (const std::string& name : stage.model.added) {
     if (name != effect) model.added.push_back(name);
@@ -42,9 +43,18 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   }
   model.fitted.parameters = parameters.parameters;
   model.fitted.theta = parameters.start;
-  model.fitted =
-      fit_innovations(stage.context, parameters, wide(plain.options.threads), InnovationFit::trial);
-  return settled(plain, std::move(model), stage.noise, Settling::once, wide(plain.options.threads));
+  return model;
+}
+
+/// The same, fitted.
+InnovationStage exchanged(const SearchContext& plain, const InnovationStage& stage,
+                          const std::string& effect, const std::string& other,
+                          const ParameterSubset& own) {
+  ModelStage model = in_place_of(stage, effect, other, own);
+  const SimulationWidth width = wide(plain.options.threads);
+  model.fitted = fit_innovations(stage.context, {model.fitted.parameters, model.fitted.theta},
+                                 width, InnovationFit::trial);
+  return settled(plain, std::move(model), stage.noise, Settling::once, width);
 }
 
 }  // namespace
@@ -142,6 +152,44 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
            leaves_its_range(other.model.fitted, without.model.fitted.parameters.size());
   });
   return found;
+}
+
+void add_runners_up(const SearchContext& plain, const InnovationStage& final,
+                    const std::string& effect, const std::vector<InnovationRound>& rounds,
+                    std::vector<InnovationStage>& exchanges) {
+  const auto taken = std::find_if(rounds.rbegin(), rounds.rend(), [&](const auto& round) {
+    return round.taken && round.candidates.front().effect == effect;
+  });
+  if (taken == rounds.rend()) return;
+  const std::vector<std::string>& added = final.model.added;
+  const auto is_tried = [&](const std::string& other) {
+    return std::find(added.begin(), added.end(), other) != added.end() ||
+           std::any_of(exchanges.begin(), exchanges.end(), [&](const InnovationStage& stage) {
+             return stage.model.added.back() == other;
+           });
+  };
+  const SimulationWidth width = wide(plain.options.threads);
+  for (const InnovationCandidate& other : taken->candidates) {
+    if (!other.settled || other.effect.empty() || plain.cancelled() || is_tried(other.effect) ||
+        other.gain_nats < kRunnerUp * taken->candidates.front().gain_nats) {
+      continue;
+    }
+    const auto own = [&](const FreeParameter& p) { return belongs_to(p, other.effect); };
+    ModelStage model = in_place_of(final, effect, other.effect, subset(other.fitted, own));
+    // the plant as it was beside the runner-up: the other effect has bent it
+    FitSummary& fitted = model.fitted;
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      const double known = other.fitted.value(fitted.parameters[i].name);
+      if (std::isfinite(known))
+        fitted.theta[static_cast<Eigen::Index>(i)] = fitted.parameters[i].to_theta(known);
+    }
+    InnovationStage stage = settled(plain, std::move(model), final.noise, Settling::once, width);
+    if (penalised(stage) < penalised(final) + 2.0 * kWorthSettling_nats) {
+      InnovationStage polished = settled(plain, stage.model, stage.noise, Settling::fully, width);
+      if (penalised(polished) < penalised(stage)) stage = std::move(polished);
+    }
+    exchanges.push_back(std::move(stage));
+  }
 }
 
 InnovationRivals rivals_among(const InnovationStage& final, const std::string& effect,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/selection/innovation_round.h"
 #include "estimator/greybox/selection/trial_memo.h"
 
 namespace estimator::greybox::selection {
@@ -41,6 +42,13 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
                                                      const std::string& effect,
                                                      const InnovationStage& without,
                                                      TrialMemo& memo);
+
+/// Adds to `exchanges` the final stage with the runners-up of the round that took an effect in the
+/// place of that one: the lines and effects that came in since may be their own. Settled, and
+/// polished where one may be level.
+void add_runners_up(const SearchContext& plain, const InnovationStage& final,
+                    const std::string& effect, const std::vector<InnovationRound>& rounds,
+                    std::vector<InnovationStage>& exchanges);
 
 /// The effect and those of its exchanges that explain the record about as well, where the search
 /// may owe `inexact_nats` to models that are not exact.

@@ -106,6 +106,7 @@ bool exchange(const SearchContext& context, InnovationSearch& search, Innovation
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     InnovationStage without = stage_without(context, search, stage, i);
     std::vector<InnovationStage> others = exchanges(context, stage, added[i], without, search.memo);
+    add_runners_up(context, stage, added[i], search.rounds, others);
     search.rivals[added[i]] =
         rivals_among(stage, added[i], others, inexact_nats(context, search, stage));
     std::erase_if(others, [](const auto& other) { return !effect_out_of_range(other).empty(); });

@@ -313,15 +313,34 @@ std::vector<Candidate> pair_round(const SearchContext& context, const Round& sin
   return candidates;
 }
 
+namespace {
+
+/// Fall of the log likelihood of the held-out data per further parameter that tells nothing, also
+/// where it is consistent: a parameter that only follows another effect's.
+constexpr double kIdle_nats = 2.0;
+
+/// True where the held-out data do not show that a candidate does worse than the best for having
+/// fewer parameters.
+bool does_as_well(const SearchContext& context, const Candidate& other, const Candidate& best) {
+  const double further =
+      static_cast<double>(best.fitted.parameters.size() - other.fitted.parameters.size());
+  const double lost_nats = context.problem.data.validation_mask.sum() *
+                           std::log(other.validation_rms_m / best.validation_rms_m);
+  return lost_nats < kIdle_nats * further || chance(context, other.fitted, best.fitted) > kChance;
+}
+
+}  // namespace
+
 const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
-  const Candidate* chosen = &candidates.front();
+  const Candidate& best = candidates.front();
+  const Candidate* chosen = &best;
   for (const Candidate& other : candidates) {
     if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
     if (other.fitted.parameters.size() < chosen->fitted.parameters.size() &&
-        prior_cost(other.fitted) < prior_cost(candidates.front().fitted) + kStrain &&
-        other.validation_rms_m < (1.0 + worthwhile_at(context, other.validation_rms_m)) *
-                                     candidates.front().validation_rms_m &&
-        chance(context, other.fitted, candidates.front().fitted) > kChance) {
+        prior_cost(other.fitted) < prior_cost(best.fitted) + kStrain &&
+        other.validation_rms_m <
+            (1.0 + worthwhile_at(context, other.validation_rms_m)) * best.validation_rms_m &&
+        does_as_well(context, other, best)) {
       chosen = &other;
     }
   }

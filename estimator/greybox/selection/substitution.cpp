@@ -1,7 +1,9 @@
 #include "estimator/greybox/selection/substitution.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "estimator/greybox/fit.h"
 #include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
@@ -20,13 +22,27 @@ ModelStage without(const SearchContext& context, const ModelStage& stage,
   return rest;
 }
 
+/// True when the effect's size, its first parameter, is zero or within its error.
+bool is_small(const SearchContext& context, const FitSummary& fitted, const std::string& effect) {
+  if (is_idle(fitted, effect)) return true;
+  if (fitted.jacobian.cols() != fitted.theta.size()) return false;
+  const Eigen::VectorXd errors =
+      std_errors(context.problem.data, context.problem.data.training_mask, fitted);
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (belongs_to(fitted.parameters[i], effect) && fitted.parameters[i].refinement == 0)
+      return std::abs(fitted.theta[k]) < errors[k];
+  }
+  return false;
+}
+
 }  // namespace
 
 void substitute_idle_effects(const SearchContext& context, SearchBranch& branch) {
   if (branch.stage.added.size() < 2) return;
   const std::vector<std::string> added = branch.stage.added;
   for (const std::string& effect : added) {
-    if (!is_idle(branch.stage.fitted, effect) || context.cancelled()) continue;
+    if (!is_small(context, branch.stage.fitted, effect) || context.cancelled()) continue;
     Round round = single_round(context, without(context, branch.stage, effect),
                                static_cast<int>(branch.rounds.size()) + 1);
     if (round.candidates.empty()) continue;

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "estimator/greybox/selection/first_stage.h"
 #include "tests/estimator/greybox/selection/servo_problem.h"
@@ -90,6 +92,29 @@ TEST(Chance, IsCertainWithTooLittleToCount) {
   context.problem.data.validation_mask.setZero();
   Noise noise(4);
   EXPECT_EQ(chance(context, noise.residual(2e-6), noise.residual(1e-6)), 1.0);
+}
+
+/// The error of `best` times a ratio, in every sample, left by a model of so many parameters.
+Candidate scaled(const greybox::FitSummary& best, double ratio, std::size_t parameters) {
+  Candidate candidate;
+  candidate.effects = {"effect"};
+  candidate.fitted.residual_m = ratio * best.residual_m;
+  candidate.fitted.parameters.resize(parameters);
+  candidate.fitted.theta = VectorXd::Zero(static_cast<Index>(parameters));
+  candidate.validation_rms_m = ratio * 1e-6;
+  candidate.fitted_at_all = true;
+  return candidate;
+}
+
+// 3000 samples score: of the two ratios one loses 0.6 nats and the other 9, both in every sample.
+TEST(Simplest, AParameterOfLessThanTwoNatsIsNotWorthItHoweverSteadyTheyAre) {
+  const SearchContext context = blocks();
+  const greybox::FitSummary best = Noise(4).residual(1e-6);
+  for (const auto& [ratio, chosen] : {std::pair{1.0002, 1}, {1.003, 2}}) {
+    const std::vector<Candidate> candidates{scaled(best, 1.0, 2), scaled(best, ratio, 1)};
+    ASSERT_LT(chance(context, candidates[1].fitted, candidates[0].fitted), 1e-4);
+    EXPECT_EQ(simplest(context, candidates).fitted.parameters.size(), chosen) << ratio;
+  }
 }
 
 TEST(SingleRound, RanksTheHiddenEffectFirstAndTellsHowItGoes) {

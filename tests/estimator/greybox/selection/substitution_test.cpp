@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "estimator/greybox/fit.h"
 #include "estimator/greybox/selection/first_stage.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -48,6 +49,24 @@ TEST(Substitution, OrificeDampingTakesThePlaceOfSlavesWithoutMass) {
   substitute_idle_effects(context, branch);
   EXPECT_THAT(branch.stage.added, UnorderedElementsAre("transport_delay", "quadratic_damping"));
   EXPECT_LT(branch.stage.fitted.validation_rms_m, 1.01 * before_m);
+}
+
+TEST(Substitution, AMassWithinItsErrorKeepsNoSlaves) {
+  const SearchContext context = context_of(
+      "motion=multisine,transport_delay.delay_s=0.003,"
+      "quadratic_damping.coefficient_N_s2_per_m2=16000");
+  SearchBranch branch = slaves_and_delay(context);
+  FitSummary& fitted = branch.stage.fitted;
+  const auto mass = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
+                                 [](const auto& p) { return p.name == "coupled_slaves.mass_kg"; });
+  ASSERT_NE(mass, fitted.parameters.end());
+  const auto i = mass - fitted.parameters.begin();
+  fitted.at_bound[static_cast<std::size_t>(i)] = false;
+  fitted.theta[i] =
+      0.5 * std_errors(context.problem.data, context.problem.data.training_mask, fitted)[i];
+  ASSERT_GT(fitted.theta[i], 0.0);
+  substitute_idle_effects(context, branch);
+  EXPECT_THAT(branch.stage.added, UnorderedElementsAre("transport_delay", "quadratic_damping"));
 }
 
 TEST(Substitution, SlavesWithAMassStay) {
