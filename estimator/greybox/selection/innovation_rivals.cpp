@@ -1,6 +1,7 @@
 #include "estimator/greybox/selection/innovation_rivals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -154,6 +155,32 @@ std::vector<InnovationStage> exchanges(const SearchContext& plain, const Innovat
   return found;
 }
 
+namespace {
+
+/// The likelier of two: the plant as it is in the final stage, which the effect may have bent, and
+/// as it was beside the other one.
+InnovationStage runner_up(const SearchContext& plain, const InnovationStage& final,
+                          const std::string& effect, const InnovationCandidate& other) {
+  const auto own = [&](const FreeParameter& p) { return belongs_to(p, other.effect); };
+  const ModelStage here = in_place_of(final, effect, other.effect, subset(other.fitted, own));
+  ModelStage there = here;
+  FitSummary& fitted = there.fitted;
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const double known = other.fitted.value(fitted.parameters[i].name);
+    if (std::isfinite(known))
+      fitted.theta[static_cast<Eigen::Index>(i)] = fitted.parameters[i].to_theta(known);
+  }
+  std::array<const ModelStage*, 2> starts{&here, &there};
+  std::array<InnovationStage, 2> reached;
+  in_parallel(starts.size(), plain.options.threads, [&](std::size_t i) {
+    reached[i] = settled(plain, *starts[i], final.noise, Settling::once, SimulationWidth{});
+  });
+  const bool is_here = penalised(reached[0]) <= penalised(reached[1]);
+  return std::move(is_here ? reached[0] : reached[1]);
+}
+
+}  // namespace
+
 void add_runners_up(const SearchContext& plain, const InnovationStage& final,
                     const std::string& effect, const std::vector<InnovationRound>& rounds,
                     std::vector<InnovationStage>& exchanges) {
@@ -174,16 +201,7 @@ void add_runners_up(const SearchContext& plain, const InnovationStage& final,
         other.gain_nats < kRunnerUp * taken->candidates.front().gain_nats) {
       continue;
     }
-    const auto own = [&](const FreeParameter& p) { return belongs_to(p, other.effect); };
-    ModelStage model = in_place_of(final, effect, other.effect, subset(other.fitted, own));
-    // the plant as it was beside the runner-up: the other effect has bent it
-    FitSummary& fitted = model.fitted;
-    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-      const double known = other.fitted.value(fitted.parameters[i].name);
-      if (std::isfinite(known))
-        fitted.theta[static_cast<Eigen::Index>(i)] = fitted.parameters[i].to_theta(known);
-    }
-    InnovationStage stage = settled(plain, std::move(model), final.noise, Settling::once, width);
+    InnovationStage stage = runner_up(plain, final, effect, other);
     if (penalised(stage) < penalised(final) + 2.0 * kWorthSettling_nats) {
       InnovationStage polished = settled(plain, stage.model, stage.noise, Settling::fully, width);
       if (penalised(polished) < penalised(stage)) stage = std::move(polished);
