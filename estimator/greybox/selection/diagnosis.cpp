@@ -259,7 +259,7 @@ enum class CommandTimes { as_logged, may_lead };
 void seek_effects(SearchContext& context, SearchContext search, SearchStart start,
                   CommandTimes times, Diagnosis& result) {
   continue_search(search, start);
-  if (start.branch.stage.added.size() > 1 &&
+  if (start.branch.stage.added.size() != 1 &&
       leaves_physics_to_simulations(search, start.branch.stage)) {
     prefer_pair(search, start);
   }

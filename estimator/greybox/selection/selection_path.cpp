@@ -14,11 +14,20 @@ constexpr double kFarStage = 1.5;
 /// An effect that removes this share of the held-out error needs no cross-validation.
 constexpr double kPlainToSee = 0.5;
 
-/// `before` with one further effect, which starts at its value in the final model.
+ParameterSubset all(const ModelStage& stage) {
+  return subset(stage.fitted, [](const auto&) { return true; });
+}
+
+/// The effect's parameters, which start at their values in the final model.
+ParameterSubset own(const ModelStage& final, const std::string& effect) {
+  return subset(final.fitted, [&](const auto& p) { return belongs_to(p, effect); });
+}
+
+/// `before` with one further effect.
 ParameterSubset taking(const ModelStage& before, const ModelStage& final,
                        const std::string& effect) {
-  ParameterSubset selection = subset(before.fitted, [](const auto&) { return true; });
-  append(selection, subset(final.fitted, [&](const auto& p) { return belongs_to(p, effect); }));
+  ParameterSubset selection = all(before);
+  append(selection, own(final, effect));
   return selection;
 }
 
@@ -65,14 +74,17 @@ ModelStage best_of(const SearchContext& context, const ModelStage& before, const
 std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
                                 const ModelStage& final) {
   std::vector<ModelStage> path{first};
+  ModelStage before = first;
   std::vector<std::string> remaining = final.added;
   while (remaining.size() > 1 && !context.cancelled()) {
-    path.push_back(best_of(context, path.back(), final, remaining));
-    std::erase(remaining, path.back().added.back());
+    before = best_of(context, before, final, remaining);
+    std::erase(remaining, before.added.back());
+    if (before.fitted.validation_rms_m < path.back().fitted.validation_rms_m)
+      path.push_back(before);
   }
   if (remaining.empty()) return path;
   ModelStage last = final;
-  last.added = path.back().added;
+  last.added = std::move(before.added);
   last.added.insert(last.added.end(), remaining.begin(), remaining.end());
   path.push_back(std::move(last));
   return path;
@@ -81,15 +93,16 @@ std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& 
 std::vector<ModelStage> cross_validated_path(const SearchContext& context, CrossValidation& halves,
                                              const std::vector<ModelStage>& path) {
   std::vector<ModelStage> kept{path.front()};
-  const auto all = [](const ModelStage& stage) {
-    return subset(stage.fitted, [](const auto&) { return true; });
-  };
   for (std::size_t i = 1; i < path.size() && !context.cancelled(); ++i) {
-    const std::string& effect = path[i].added.back();
-    ModelStage more =
-        taken(kept.back(), effect,
-              refit(context, taking(kept.back(), path.back(), effect),
-                    context.problem.data.training_mask, wide(context.options.threads)));
+    ModelStage more = kept.back();
+    ParameterSubset selection = all(more);
+    const std::vector<std::string>& added = path[i].added;
+    for (std::size_t k = path[i - 1].added.size(); k < added.size(); ++k) {
+      append(selection, own(path.back(), added[k]));
+      more.added.push_back(added[k]);
+    }
+    more.fitted = refit(context, selection, context.problem.data.training_mask,
+                        wide(context.options.threads));
     // a fit from the stage before may end elsewhere than the path's own
     if (kept.size() == i && path[i].fitted.training_rms_m < more.fitted.training_rms_m) {
       more = path[i];

@@ -10,7 +10,7 @@
 namespace estimator::greybox::selection {
 
 /// Stages from `first` (no additions) to `final`, both included; `added` is in path order in all of
-/// them.
+/// them. An effect that leaves no less until another makes up for it comes in with that one.
 [[nodiscard]] std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
                                               const ModelStage& final);
 

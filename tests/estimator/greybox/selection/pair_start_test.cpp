@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "config/schema/document.h"
+#include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
 namespace estimator::greybox::selection {
@@ -81,6 +82,25 @@ TEST(PairStart, FindsADeadBandBehindAnOffsetThatHidesIt) {
   prefer_pair(context, start);
   EXPECT_THAT(start.branch.stage.added, testing::UnorderedElementsAre("deadband", "null_bias"));
   EXPECT_LT(start.branch.stage.fitted.validation_rms_m, 0.1 * one_by_one_m);
+}
+
+// Given as a servo, a single rod's offset is what its areas take back on average; its oil and mass
+// keep the two from the noise.
+TEST(LongPairStart, FindsTwoOfWhichNeitherHelpsAlone) {
+  const truth::Record record = truth::simulate(truth::parse_case(
+      "rig=single_rod,motion=fast_steps,length_s=15,null_bias.offset_V=-0.1863,"
+      "plant.area_cap_m2=0.002,plant.area_rod_m2=0.001358,plant.supply_pressure_Pa=12.86e6",
+      65025550005));
+  plant_sim::ModelFile servo = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/velocity_servo.toml");
+  *servo.value("gain_mps_per_V") = 0.05;
+  *servo.value("time_constant_s") = 0.01;
+  DiagnosisOptions options;
+  options.threads = 2;
+  const Diagnosis found =
+      diagnose(make_problem(servo, fit_dataset({diagnose_test::dataset_of(record)}, {})), options);
+  EXPECT_THAT(found.missing, testing::IsSupersetOf({"null_bias", "flow_asymmetry"}));
+  EXPECT_NEAR(found.final.value("null_bias.offset_V"), -0.1863, 0.02);
 }
 
 }  // namespace
