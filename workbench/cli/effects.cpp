@@ -87,8 +87,9 @@ void print_library(const std::vector<EffectInfo>& listed) {
                 what.c_str(), config::schema::joined(effect.sites).c_str(),
                 config::schema::joined(plants_of(effect)).c_str());
     for (const ParameterInfo& p : effect.parameters) {
-      std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
-                  printed_unit(p.name).c_str(), p.typical,
+      const std::string unit = printed_unit(p.name);
+      std::printf("    %-30s %g to %g%s%s, typically %g: %s\n", p.name, p.min, p.max,
+                  unit.empty() ? "" : " ", unit.c_str(), p.typical,
                   config::units::axis_words(p.what).c_str());
     }
   }

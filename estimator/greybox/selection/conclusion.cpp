@@ -137,7 +137,7 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
     refit_to_whole(context, result.search);
     result.searched_s = length_s(search.problem.data);
   }
-  take_errors(search, result);
+  take_errors(result.searched_s ? context : search, result);
   const ModelStage& final = result.search.final;
   result.repetition =
       repeated_motion((result.searched_s ? context : search).problem.data, final.fitted.residual_m);

@@ -7,6 +7,7 @@
 
 #include "config/units/quantity.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/search_chance.h"
 #include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
@@ -140,6 +141,19 @@ bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
   return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
+/// True for an effect that explained nearly all before a law beside it came near to the rest.
+bool is_beyond_doubt_without_laws(const Diagnosis& diagnosis, const std::string& effect) {
+  std::size_t law = diagnosis.steps.size();
+  for (const Law& one : diagnosis.laws) law = std::min(law, step_of(diagnosis, one.effect.name));
+  const std::size_t step = step_of(diagnosis, effect);
+  if (step == 0 || step >= law || law == diagnosis.steps.size()) return false;
+  const double left_m = diagnosis.steps[law - 1].validation_rms_m;
+  const double floor_m = diagnosis.noise_floor_m;
+  return left_m < kNoMeasure_ratio * floor_m &&
+         removed_m2(diagnosis, step) >
+             kBeyondDoubtThere * (std::pow(left_m, 2) - std::pow(floor_m, 2));
+}
+
 /// True when a curve that enters elsewhere explains as much as all effects together.
 bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.whole.empty()) return false;
@@ -211,26 +225,6 @@ bool is_beyond_sense(const Diagnosis& diagnosis, const std::string& effect) {
   return std::any_of(size, diagnosis.parameters.end(), [&](const auto& p) {
     return is_own(p) && shares_unit(*size, p) && p.at_bound && p.value != 0.0;
   });
-}
-
-struct Chance {
-  double p_value = std::nan("");        ///< that what the effect gained is chance; NaN: not known
-  double p_best_of_all = std::nan("");  ///< that the best of all that were tried gains as much
-};
-
-/// For what the effect gained when it was taken last.
-Chance chance_of(const StructureSearch& search, const std::string& effect) {
-  for (auto round = search.rounds.rbegin(); round != search.rounds.rend(); ++round) {
-    if (has(round->before.added, effect)) continue;
-    const auto own = std::find_if(
-        round->candidates.begin(), round->candidates.end(),
-        [&](const auto& one) { return one.fitted_at_all && has(one.effects, effect); });
-    // 1: too few blocks of held-out data to say
-    if (own == round->candidates.end()) continue;
-    if (!(own->p_value < 1.0)) return {};
-    return {own->p_value, own->p_value * static_cast<double>(round->candidates.size())};
-  }
-  return {};
 }
 
 /// True where noise explained the model without the effect, which removed little: it may make up
@@ -338,7 +332,10 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (const std::string& effect : diagnosis.missing) {
     std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
     // beside a law that only comes near, an effect may make up for what it lacks
-    if (!doubt && error_remains && !diagnosis.laws.empty()) doubt = Doubt::stand_in;
+    if (!doubt && error_remains && !diagnosis.laws.empty() &&
+        !is_beyond_doubt_without_laws(diagnosis, effect)) {
+      doubt = Doubt::stand_in;
+    }
     if (!doubt && is_another_plant(diagnosis)) doubt = Doubt::stand_in;
     if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);

@@ -259,10 +259,7 @@ enum class CommandTimes { as_logged, may_lead };
 void seek_effects(SearchContext& context, SearchContext search, SearchStart start,
                   CommandTimes times, Diagnosis& result) {
   continue_search(search, start);
-  if (start.branch.stage.added.size() != 1 &&
-      leaves_physics_to_simulations(search, start.branch.stage)) {
-    prefer_pair(search, start);
-  }
+  if (start.branch.stage.added.size() > 1) prefer_pair_to_physics(search, start);
   if (times == CommandTimes::may_lead)
     result.command_lead_samples = take_command_lead(context, search, start);
   if (prefer_other_file_values(search, start, context.problem) ||
@@ -283,6 +280,7 @@ void seek_effects(SearchContext& context, SearchContext search, SearchStart star
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
   } else if (!find_drift(search, start, result)) {
+    if (start.branch.stage.added.empty()) prefer_pair_to_physics(search, start);
     weigh_innovations(context, search, std::move(start), result, likeliest);
   }
   if (!context.problem.effects_only) look_beyond_effects(search, first, likeliest, result);

@@ -47,7 +47,7 @@ ModelStage in_place_of(const InnovationStage& stage, const std::string& effect,
   return model;
 }
 
-/// The same, fitted.
+/// The model of in_place_of(), fitted and settled.
 InnovationStage exchanged(const SearchContext& plain, const InnovationStage& stage,
                           const std::string& effect, const std::string& other,
                           const ParameterSubset& own) {
@@ -56,6 +56,16 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   model.fitted = fit_innovations(stage.context, {model.fitted.parameters, model.fitted.theta},
                                  width, InnovationFit::trial);
   return settled(plain, std::move(model), stage.noise, Settling::once, width);
+}
+
+/// Takes the parameters that another fit knows at its values, and a share of the others.
+void take_values(const FitSummary& known, double share, FitSummary& fitted) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    const double value = known.value(p.name);
+    theta = std::clamp(std::isfinite(value) ? p.to_theta(value) : share * theta, p.lower, p.upper);
+  }
 }
 
 }  // namespace
@@ -75,14 +85,7 @@ InnovationStage not_above(const SearchContext& plain, InnovationStage stage,
   // the plant as the bare model has it, the effects as they are and absent
   for (const double share : {1.0, 0.0}) {
     ModelStage model = strayed;
-    FitSummary& fitted = model.fitted;
-    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-      const FreeParameter& p = fitted.parameters[i];
-      double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
-      const double known = bare.model.fitted.value(p.name);
-      theta =
-          std::clamp(std::isfinite(known) ? p.to_theta(known) : share * theta, p.lower, p.upper);
-    }
+    take_values(bare.model.fitted, share, model.fitted);
     InnovationStage again =
         settled(plain, std::move(model), noise, Settling::once, wide(plain.options.threads));
     if (again.minus_two_log < stage.minus_two_log) stage = std::move(again);
@@ -164,12 +167,7 @@ InnovationStage runner_up(const SearchContext& plain, const InnovationStage& fin
   const auto own = [&](const FreeParameter& p) { return belongs_to(p, other.effect); };
   const ModelStage here = in_place_of(final, effect, other.effect, subset(other.fitted, own));
   ModelStage there = here;
-  FitSummary& fitted = there.fitted;
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const double known = other.fitted.value(fitted.parameters[i].name);
-    if (std::isfinite(known))
-      fitted.theta[static_cast<Eigen::Index>(i)] = fitted.parameters[i].to_theta(known);
-  }
+  take_values(other.fitted, 1.0, there.fitted);
   std::array<const ModelStage*, 2> starts{&here, &there};
   std::array<InnovationStage, 2> reached;
   in_parallel(starts.size(), plain.options.threads, [&](std::size_t i) {
@@ -206,7 +204,8 @@ void add_runners_up(const SearchContext& plain, const InnovationStage& final,
       InnovationStage polished = settled(plain, stage.model, stage.noise, Settling::fully, width);
       if (penalised(polished) < penalised(stage)) stage = std::move(polished);
     }
-    exchanges.push_back(std::move(stage));
+    if (std::isfinite(stage.minus_two_log) && effect_out_of_range(stage).empty())
+      exchanges.push_back(std::move(stage));
   }
 }
 

@@ -45,7 +45,7 @@ std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationSta
 
 /// Adds to `exchanges` the final stage with the runners-up of the round that took an effect in the
 /// place of that one: the lines and effects that came in since may be their own. Settled, and
-/// polished where one may be level.
+/// polished where one may be level; effects that leave their range are none.
 void add_runners_up(const SearchContext& plain, const InnovationStage& final,
                     const std::string& effect, const std::vector<InnovationRound>& rounds,
                     std::vector<InnovationStage>& exchanges);

@@ -367,11 +367,14 @@ std::vector<InnovationRivals> find_rivals(const SearchContext& context,
   for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
     if (std::find(effects.begin(), effects.end(), added[i]) == effects.end()) continue;
     const auto known = search.rivals.find(added[i]);
-    InnovationRivals group =
-        known != search.rivals.end()
-            ? known->second
-            : rivals_among(search.final, added[i], exchanges_of(context, search, i, memo),
-                           search.inexact_nats);
+    InnovationRivals group;
+    if (known != search.rivals.end()) {
+      group = known->second;
+    } else {
+      std::vector<InnovationStage> others = exchanges_of(context, search, i, memo);
+      add_runners_up(without_holdouts(context), search.final, added[i], search.rounds, others);
+      group = rivals_among(search.final, added[i], others, search.inexact_nats);
+    }
     if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;

@@ -41,6 +41,10 @@ void continue_search(const SearchContext& context, SearchStart& start) {
   }
 }
 
+void prefer_pair_to_physics(const SearchContext& context, SearchStart& start) {
+  if (leaves_physics_to_simulations(context, start.branch.stage)) prefer_pair(context, start);
+}
+
 double take_command_lead(SearchContext& context, SearchContext& search, SearchStart& start) {
   if (is_explained(search, start.branch.stage) && floor_shows_lead(search.problem.data)) return 0.0;
   const CommandLead lead = find_command_lead(search, start);

@@ -19,6 +19,9 @@ inline constexpr double kFarLess = 0.5;
 /// Adds a second effect where the first leaves more.
 void continue_search(const SearchContext& context, SearchStart& start);
 
+/// Takes a pair of effects, as prefer_pair(), where the branch leaves physics.
+void prefer_pair_to_physics(const SearchContext& context, SearchStart& start);
+
 /// Searches again with the command earlier where that leaves much less. Returns the lead in
 /// samples, 0 for none.
 [[nodiscard]] double take_command_lead(SearchContext& context, SearchContext& search,

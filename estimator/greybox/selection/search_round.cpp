@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/model_refinements.h"

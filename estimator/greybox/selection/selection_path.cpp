@@ -1,7 +1,9 @@
 #include "estimator/greybox/selection/selection_path.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "estimator/greybox/selection/candidate_gain.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/parallel.h"
 
@@ -13,6 +15,8 @@ constexpr int kPathIterations = 8;
 constexpr double kFarStage = 1.5;
 /// An effect that removes this share of the held-out error needs no cross-validation.
 constexpr double kPlainToSee = 0.5;
+/// Share of the error that an effect has to remove to help: fits converge to a tenth of it.
+constexpr double kHelps = 1e-4;
 
 ParameterSubset all(const ModelStage& stage) {
   return subset(stage.fitted, [](const auto&) { return true; });
@@ -69,6 +73,32 @@ ModelStage best_of(const SearchContext& context, const ModelStage& before, const
   return taken(before, effects[static_cast<std::size_t>(best - fits.begin())], std::move(*best));
 }
 
+/// A step that takes several effects at once, without those that it does not need: each of these
+/// comes in after it.
+std::vector<ModelStage> divided(const SearchContext& context, const ModelStage& before,
+                                ModelStage joint) {
+  const auto first = static_cast<std::ptrdiff_t>(before.added.size());
+  const std::vector<std::string> taken_at_once(joint.added.begin() + first, joint.added.end());
+  if (taken_at_once.size() < 3) return {std::move(joint)};
+  for (const std::string& effect : taken_at_once) {
+    if (context.cancelled()) break;
+    ModelStage rest = joint;
+    std::erase(rest.added, effect);
+    rest.fitted =
+        refit(context, subset(joint.fitted, [&](const auto& p) { return !belongs_to(p, effect); }),
+              context.problem.data.training_mask, wide(context.options.threads));
+    const double least_m = joint.fitted.validation_rms_m;
+    if (rest.fitted.validation_rms_m < (1.0 + worthwhile_at(context, least_m)) * least_m) {
+      std::erase(joint.added, effect);
+      joint.added.push_back(effect);
+      std::vector<ModelStage> steps = divided(context, before, std::move(rest));
+      steps.push_back(std::move(joint));
+      return steps;
+    }
+  }
+  return {std::move(joint)};
+}
+
 }  // namespace
 
 std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
@@ -76,17 +106,21 @@ std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& 
   std::vector<ModelStage> path{first};
   ModelStage before = first;
   std::vector<std::string> remaining = final.added;
+  const auto take = [&](ModelStage stage) {
+    for (ModelStage& step : divided(context, path.back(), std::move(stage)))
+      path.push_back(std::move(step));
+  };
   while (remaining.size() > 1 && !context.cancelled()) {
     before = best_of(context, before, final, remaining);
     std::erase(remaining, before.added.back());
-    if (before.fitted.validation_rms_m < path.back().fitted.validation_rms_m)
-      path.push_back(before);
+    const double enough_m = (1.0 - kHelps) * path.back().fitted.validation_rms_m;
+    if (before.fitted.validation_rms_m < enough_m) take(before);
   }
   if (remaining.empty()) return path;
   ModelStage last = final;
   last.added = std::move(before.added);
   last.added.insert(last.added.end(), remaining.begin(), remaining.end());
-  path.push_back(std::move(last));
+  take(std::move(last));
   return path;
 }
 

@@ -40,8 +40,8 @@ constexpr double kSamePath = 0.1;
 /// lies farther is no effect of the library: further effects are added as long as they help, no
 /// more.
 constexpr double kNearFloor = 5.0;
-/// Share of the error of two effects, taken one after another, that a pair leaves which is taken in
-/// their place though a disturbance keeps it from the noise.
+/// Share of the error of two effects, taken one after another, or of none, that a pair leaves which
+/// is taken in their place though a disturbance keeps it from the noise.
 constexpr double kPairLeaves = 0.25;
 
 /// Takes the round's first candidate, or one as good with fewer parameters; false when it is no

@@ -28,7 +28,7 @@ inline constexpr double kWorthwhileInNoise = 0.004;
 inline constexpr double kWorthwhileInSlowLogs = 0.05;
 /// Ratio of held-out error to noise floor above which the record is unexplained.
 inline constexpr double kUnexplained = 1.15;
-/// The same of fitted_rms_m(), which says no more than that something happens there.
+/// The same of fitted_rms_m(): looser, because it only has to reveal an event.
 inline constexpr double kFittedToo = 1.5;
 /// Ratio of held-out errors within which rivals explain the record about as well as the best.
 inline constexpr double kRivals = 0.05;

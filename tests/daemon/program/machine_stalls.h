@@ -1,5 +1,5 @@
-// How long the machine did not run a thread that was due: a host that takes a CPU away, or load of
-// a higher priority. What happened meanwhile says nothing of the daemon.
+// Longest delay of a thread that was due, because a host took its CPU away or load of a higher
+// priority ran: a test discounts results from that time.
 #pragma once
 
 #include <pthread.h>
@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -16,7 +18,8 @@
 
 namespace program {
 
-/// A thread on each CPU that is due every millisecond, in real time where the machine lets it.
+/// A thread on each CPU that is due every millisecond, at the highest priority, so that a daemon
+/// that keeps its CPU busy is no stall. Without permission for it nothing counts as a stall.
 class MachineStalls {
  public:
   MachineStalls() {
@@ -32,33 +35,46 @@ class MachineStalls {
   MachineStalls(const MachineStalls&) = delete;
   MachineStalls& operator=(const MachineStalls&) = delete;
 
-  /// The longest time, beyond the millisecond, that one of the threads had to wait so far.
-  double longest_s() const { return static_cast<double>(longest_ns_) * 1e-9; }
+  /// Longest delay beyond the millisecond, of those that reach into the time from..to.
+  double longest_s(std::int64_t from_ns, std::int64_t to_ns) {
+    const std::lock_guard lock(mutex_);
+    std::int64_t longest_ns = 0;
+    for (const Stall& stall : stalls_) {
+      if (stall.begin_ns < to_ns && stall.end_ns > from_ns)
+        longest_ns = std::max(longest_ns, stall.end_ns - stall.begin_ns);
+    }
+    return static_cast<double>(longest_ns) * 1e-9;
+  }
 
  private:
+  struct Stall {
+    std::int64_t begin_ns, end_ns;
+  };
+
   void watch(int cpu) {
     cpu_set_t only;
     CPU_ZERO(&only);
     CPU_SET(cpu, &only);
-    pthread_setaffinity_np(pthread_self(), sizeof only, &only);
     sched_param prompt{};
-    prompt.sched_priority = 1;  // below the daemon: it may take what it needs
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &prompt);
+    prompt.sched_priority = sched_get_priority_max(SCHED_FIFO);
+    if (pthread_setaffinity_np(pthread_self(), sizeof only, &only) != 0 ||
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &prompt) != 0) {
+      return;
+    }
     constexpr std::int64_t kPeriod_ns = 1'000'000;
-    std::int64_t last_ns = hal::monotonic_ns();
     while (!ended_) {
+      const std::int64_t due_ns = hal::monotonic_ns() + kPeriod_ns;
       std::this_thread::sleep_for(std::chrono::nanoseconds(kPeriod_ns));
       const std::int64_t now_ns = hal::monotonic_ns();
-      std::int64_t longest_ns = longest_ns_;
-      while (now_ns - last_ns - kPeriod_ns > longest_ns &&
-             !longest_ns_.compare_exchange_weak(longest_ns, now_ns - last_ns - kPeriod_ns)) {
-      }
-      last_ns = now_ns;
+      if (now_ns < due_ns + kPeriod_ns) continue;
+      const std::lock_guard lock(mutex_);
+      stalls_.push_back({due_ns, now_ns});
     }
   }
 
   std::atomic<bool> ended_{false};
-  std::atomic<std::int64_t> longest_ns_{0};
+  std::mutex mutex_;
+  std::vector<Stall> stalls_;
   std::vector<std::thread> threads_;
 };
 

@@ -28,6 +28,7 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
       text,
       HasSubstr("acts on opening; for hydraulic_actuator, hydraulic_cylinder, velocity_servo"));
   EXPECT_THAT(text, HasSubstr("0 to 1e-09 m3/s/Pa, typically 2e-12: leakage past the piston"));
+  EXPECT_THAT(text, HasSubstr("0 to 1, typically 0.5: share of the band"));
 }
 
 TEST(Effects, ListsOneAloneByEitherOfItsNames) {

@@ -10,11 +10,10 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Some ten standard errors of the half width, and of the share where it is at its bound, or
-/// between.
+/// Some ten standard errors each.
 constexpr double kWidth_V = 1e-3;
-constexpr double kWhole_ratio = 0.01;
-constexpr double kShare_ratio = 0.05;
+constexpr double kWhole_ratio = 0.01;  ///< of a share at its bound
+constexpr double kShare_ratio = 0.05;  ///< of one in between
 
 Diagnosis found_in(const std::string& band, std::size_t seed) {
   const truth::Record truth = truth::simulate(

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/estimator/greybox/selection/named_doubts.h"
@@ -280,6 +281,21 @@ TEST(Confidence, AnEffectThatEntersAsTheRestDoesIsEstablishedWhereLittleRemains)
   Diagnosis far = with_friction(2.5e-3, "force");
   far.noise_floor_m = 0.9e-6;  // 111 times that remains
   EXPECT_THAT(named(far), ElementsAre("friction stand_in"));
+}
+
+TEST(Confidence, AnEffectThatExplainedNearlyAllBeforeALawCameNearIsEstablished) {
+  for (const auto& [before_m, doubted] : {std::pair{2.5e-3, 1U}, {1.5e-3, 2U}}) {
+    Diagnosis d = with_friction(before_m, "force");
+    d.missing.emplace_back("pendulum");
+    d.laws.emplace_back();
+    d.laws.front().effect.name = "pendulum";
+    d.steps.push_back({"pendulum", 60e-6});
+    d.rms_after_m = 60e-6;
+    EXPECT_EQ(possible_effects(d).size(), doubted) << before_m;
+    EXPECT_EQ(possible_effects(d).back().effect, "pendulum");
+    d.noise_floor_m = 0.9e-6;  // 111 times that remained without the law
+    EXPECT_EQ(possible_effects(d).size(), 2U);
+  }
 }
 
 // The main site of a dead band is the valve's opening, whatever share an amplifier has of it.
