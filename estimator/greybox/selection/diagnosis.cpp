@@ -374,11 +374,7 @@ void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& option
   const auto finer = with_finer_step(used);
   if (!finer) return;
   Diagnosis again = diagnose_by_steps(*finer, options);
-  if (options.cancel && options.cancel()) {
-    result.search.interrupted = true;
-    weigh_doubts(result);
-    return;
-  }
+  if (options.cancel && options.cancel()) return;
   if (!is_open(again) || again.rms_after_m < kFinerLeaves * result.rms_after_m) {
     result = std::move(again);
   }
@@ -390,6 +386,11 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const auto begin = std::chrono::steady_clock::now();
   Diagnosis result = diagnose_by_steps(problem, options);
   refine_step(problem, options, result);
+  // what was not tried by then may do as well
+  if (is_open(result) && options.cancel && options.cancel()) {
+    result.search.interrupted = true;
+    weigh_doubts(result);
+  }
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -46,6 +47,36 @@ TEST(InterruptedDiagnosis, WritesNoModelThatIsWorseThanItsFile) {
     EXPECT_LE(held_out_m(cut.better, servo.problem.data), (1.0 + 1e-9) * file_m)
         << last << " of " << all;
   }
+}
+
+// Beside the band the gain swings along the way and in time, as no effect or law of the library
+// does.
+TEST(InterruptedDiagnosis, NamesNoEffectOfAnUnexplainedRecord) {
+  const SearchContext servo = diagnose_test::servo_context(
+      {.rate_mps =
+           [](double u_V, double y_m, double t_s) {
+             const double past_V = u_V - std::clamp(u_V, -0.2, 0.2);
+             return diagnose_test::kServoGain * past_V *
+                    (1.0 + 0.02 * std::sin(90.0 * y_m) * std::cos(1.3 * t_s));
+           },
+       .samples = 2000});
+  std::atomic<long> asked = 0;
+  DiagnosisOptions options;
+  options.threads = 1;
+  options.cancel = [&] {
+    ++asked;
+    return false;
+  };
+  const Diagnosis whole = diagnose(servo.problem, options);
+  ASSERT_EQ(whole.verdict, Verdict::unexplained);
+  ASSERT_FALSE(whole.established().empty());
+  const long last = asked / 2;
+  asked = 0;
+  options.cancel = [&] { return asked++ >= last; };
+  const Diagnosis cut = diagnose(servo.problem, options);
+  ASSERT_EQ(cut.verdict, Verdict::unexplained);
+  EXPECT_TRUE(cut.search.interrupted);
+  EXPECT_TRUE(cut.established().empty());
 }
 
 // The likelihood has come to nothing yet, the simulations to two effects that leave a hundredth.
