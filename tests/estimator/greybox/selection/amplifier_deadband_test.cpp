@@ -10,10 +10,10 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Some ten standard errors each.
+// Tolerances of some ten standard errors each.
 constexpr double kWidth_V = 1e-3;
-constexpr double kWhole_ratio = 0.01;  ///< of a share at its bound
-constexpr double kShare_ratio = 0.05;  ///< of one in between
+constexpr double kWhole_ratio = 0.01;  ///< share at its bound
+constexpr double kShare_ratio = 0.05;  ///< share between its bounds
 
 Diagnosis found_in(const std::string& band, std::size_t seed) {
   const truth::Record truth = truth::simulate(

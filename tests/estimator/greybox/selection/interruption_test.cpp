@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "estimator/greybox/dataset_simulation.h"
 #include "estimator/greybox/selection/diagnosis.h"
@@ -27,23 +28,34 @@ SearchContext disturbed_servo() {
        .reading_m = [](double y_m, double t_s) { return y_m + 30e-6 * std::sin(107.0 * t_s); }});
 }
 
-TEST(InterruptedDiagnosis, WritesNoModelThatIsWorseThanItsFile) {
-  const SearchContext servo = disturbed_servo();
-  const double file_m = held_out_m(servo.problem.model, servo.problem.data);
+struct CutRun {
+  Diagnosis found;
+  long asked = 0;  ///< times that it asked whether to go on
+};
+
+/// On one thread, cancelled when it has asked `last` times.
+CutRun cut_at(const DiagnosisProblem& problem, long last) {
   std::atomic<long> asked = 0;
   DiagnosisOptions options;
   options.threads = 1;
-  options.cancel = [&] {
-    ++asked;
-    return false;
-  };
-  (void)diagnose(servo.problem, options);
-  const long all = asked;
+  options.cancel = [&] { return asked++ >= last; };
+  CutRun run;
+  run.found = diagnose(problem, options);
+  run.asked = asked;
+  return run;
+}
+
+CutRun whole(const DiagnosisProblem& problem) {
+  return cut_at(problem, std::numeric_limits<long>::max());
+}
+
+TEST(InterruptedDiagnosis, WritesNoModelThatIsWorseThanItsFile) {
+  const SearchContext servo = disturbed_servo();
+  const double file_m = held_out_m(servo.problem.model, servo.problem.data);
+  const long all = whole(servo.problem).asked;
   for (double share = 1.0; share * static_cast<double>(all) >= 0.5; share *= 0.6) {
     const long last = std::lround(share * static_cast<double>(all)) - 1;
-    asked = 0;
-    options.cancel = [&] { return asked++ >= last; };
-    const Diagnosis cut = diagnose(servo.problem, options);
+    const Diagnosis cut = cut_at(servo.problem, last).found;
     EXPECT_LE(held_out_m(cut.better, servo.problem.data), (1.0 + 1e-9) * file_m)
         << last << " of " << all;
   }
@@ -60,20 +72,10 @@ TEST(InterruptedDiagnosis, NamesNoEffectOfAnUnexplainedRecord) {
                     (1.0 + 0.02 * std::sin(90.0 * y_m) * std::cos(1.3 * t_s));
            },
        .samples = 2000});
-  std::atomic<long> asked = 0;
-  DiagnosisOptions options;
-  options.threads = 1;
-  options.cancel = [&] {
-    ++asked;
-    return false;
-  };
-  const Diagnosis whole = diagnose(servo.problem, options);
-  ASSERT_EQ(whole.verdict, Verdict::unexplained);
-  ASSERT_FALSE(whole.established().empty());
-  const long last = asked / 2;
-  asked = 0;
-  options.cancel = [&] { return asked++ >= last; };
-  const Diagnosis cut = diagnose(servo.problem, options);
+  const CutRun all = whole(servo.problem);
+  ASSERT_EQ(all.found.verdict, Verdict::unexplained);
+  ASSERT_FALSE(all.found.established().empty());
+  const Diagnosis cut = cut_at(servo.problem, all.asked / 2).found;
   ASSERT_EQ(cut.verdict, Verdict::unexplained);
   EXPECT_TRUE(cut.search.interrupted);
   EXPECT_TRUE(cut.established().empty());
