@@ -141,15 +141,16 @@ bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
   return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
-/// True for an effect that explained nearly all before a law beside it came near to the rest.
+/// True for an effect that by itself explained nearly all before a law came near to the rest: what
+/// came in with it or after it counts neither for it nor against what remains.
 bool is_beyond_doubt_without_laws(const Diagnosis& diagnosis, const std::string& effect) {
   std::size_t law = diagnosis.steps.size();
   for (const Law& one : diagnosis.laws) law = std::min(law, step_of(diagnosis, one.effect.name));
   const std::size_t step = step_of(diagnosis, effect);
-  if (step == 0 || step >= law || law == diagnosis.steps.size()) return false;
-  const double left_m = diagnosis.steps[law - 1].validation_rms_m;
+  if (step == 0 || step >= law || diagnosis.steps[step].added != effect) return false;
+  const double left_m = diagnosis.steps[step].validation_rms_m;
   const double floor_m = diagnosis.noise_floor_m;
-  return left_m < kNoMeasure_ratio * floor_m &&
+  return left_m > floor_m && left_m < kNoMeasure_ratio * floor_m &&
          removed_m2(diagnosis, step) >
              kBeyondDoubtThere * (std::pow(left_m, 2) - std::pow(floor_m, 2));
 }

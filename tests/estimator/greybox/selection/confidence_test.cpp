@@ -293,9 +293,17 @@ TEST(Confidence, AnEffectThatExplainedNearlyAllBeforeALawCameNearIsEstablished) 
     d.rms_after_m = 60e-6;
     EXPECT_EQ(possible_effects(d).size(), doubted) << before_m;
     EXPECT_EQ(possible_effects(d).back().effect, "pendulum");
-    d.noise_floor_m = 0.9e-6;  // 111 times that remained without the law
-    EXPECT_EQ(possible_effects(d).size(), 2U);
   }
+  Diagnosis joint = with_friction(2.5e-3, "force");
+  joint.missing = {"friction", "backlash", "pendulum"};
+  joint.parameters[3].std_error = 1e-7;
+  joint.laws.emplace_back();
+  joint.laws.front().effect.name = "pendulum";
+  joint.steps = {{"", 2.5e-3}, {"friction + backlash", 100e-6}, {"pendulum", 60e-6}};
+  joint.rms_after_m = 60e-6;
+  EXPECT_EQ(possible_effects(joint).size(), 3U) << "neither explains it alone";
+  joint.steps = {{"", 2.5e-3}, {"friction", 300e-6}, {"backlash", 100e-6}, {"pendulum", 60e-6}};
+  EXPECT_EQ(possible_effects(joint).size(), 3U) << "what came after it lowers what remains";
 }
 
 // The main site of a dead band is the valve's opening, whatever share an amplifier has of it.
