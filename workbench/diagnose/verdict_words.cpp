@@ -100,11 +100,6 @@ std::string unexplained_words(const selection::Diagnosis& d) {
                       " remains in the samples that are fitted, " +
                       config::units::times_words(d.fitted_rms_m / d.floor_m()) + " times the floor"
                 : "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
-  if (d.search.interrupted) {
-    return "Not decided: " +
-           (d.missing.empty() ? "" : "found so far " + names_words(d, d.missing) + "; ") + rest +
-           ".";
-  }
   if (d.checks && d.checks->misread()) {
     const auto gain = std::find_if(d.parameters.begin(), d.parameters.end(), [](const auto& one) {
       return one.name.find("gain") != std::string::npos;
@@ -115,6 +110,11 @@ std::string unexplained_words(const selection::Diagnosis& d) {
                 ? "."
                 : ", or, where the file's gain is off, free it with --prior " + gain->name +
                       "=none.");
+  }
+  if (d.search.interrupted) {
+    return "Not decided: " +
+           (d.missing.empty() ? "" : "found so far " + names_words(d, d.missing) + "; ") + rest +
+           ".";
   }
   const std::vector<std::string> established = d.established();
   if (established.empty()) {

@@ -358,8 +358,9 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
   return result;
 }
 
-/// True for an unexplained or undetermined record.
+/// True for an unexplained or undetermined record, unless it has to be read otherwise first.
 bool is_open(const Diagnosis& result) {
+  if (result.checks && result.checks->misread()) return false;
   return result.verdict == Verdict::unexplained || result.verdict == Verdict::undetermined;
 }
 
@@ -374,7 +375,7 @@ void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& option
   const auto finer = with_finer_step(used);
   if (!finer) return;
   Diagnosis again = diagnose_by_steps(*finer, options);
-  if (options.cancel && options.cancel()) return;
+  if (again.search.interrupted || (is_open(again) && options.cancel && options.cancel())) return;
   if (!is_open(again) || again.rms_after_m < kFinerLeaves * result.rms_after_m) {
     result = std::move(again);
   }

@@ -58,16 +58,6 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   return settled(plain, std::move(model), stage.noise, Settling::once, width);
 }
 
-/// Takes the parameters that another fit knows at its values, and a share of the others.
-void take_values(const FitSummary& known, double share, FitSummary& fitted) {
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const FreeParameter& p = fitted.parameters[i];
-    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
-    const double value = known.value(p.name);
-    theta = std::clamp(std::isfinite(value) ? p.to_theta(value) : share * theta, p.lower, p.upper);
-  }
-}
-
 }  // namespace
 
 InnovationStage without(const SearchContext& plain, const InnovationStage& stage,
@@ -85,7 +75,7 @@ InnovationStage not_above(const SearchContext& plain, InnovationStage stage,
   // the plant as the bare model has it, the effects as they are and absent
   for (const double share : {1.0, 0.0}) {
     ModelStage model = strayed;
-    take_values(bare.model.fitted, share, model.fitted);
+    take_values(bare.model.fitted, model.fitted, share);
     InnovationStage again =
         settled(plain, std::move(model), noise, Settling::once, wide(plain.options.threads));
     if (again.minus_two_log < stage.minus_two_log) stage = std::move(again);
@@ -167,7 +157,7 @@ InnovationStage runner_up(const SearchContext& plain, const InnovationStage& fin
   const auto own = [&](const FreeParameter& p) { return belongs_to(p, other.effect); };
   const ModelStage here = in_place_of(final, effect, other.effect, subset(other.fitted, own));
   ModelStage there = here;
-  take_values(other.fitted, 1.0, there.fitted);
+  take_values(other.fitted, there.fitted);
   std::array<const ModelStage*, 2> starts{&here, &there};
   std::array<InnovationStage, 2> reached;
   in_parallel(starts.size(), plain.options.threads, [&](std::size_t i) {

@@ -72,6 +72,16 @@ void append(ParameterSubset& to, const ParameterSubset& more) {
   to.parameters.insert(to.parameters.end(), more.parameters.begin(), more.parameters.end());
 }
 
+void take_values(const FitSummary& known, FitSummary& fitted, double share_of_others) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    double& theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    const double value = known.value(p.name);
+    theta = std::clamp(std::isfinite(value) ? p.to_theta(value) : share_of_others * theta, p.lower,
+                       p.upper);
+  }
+}
+
 FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
                  const Eigen::VectorXd& weights, SimulationWidth width, double observer_per_s) {
   FitOptions options;

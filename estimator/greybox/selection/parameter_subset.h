@@ -54,6 +54,8 @@ template <class Keep>
 void wrap_phases(FitSummary& fitted);
 
 void append(ParameterSubset& to, const ParameterSubset& more);
+/// Takes the parameters that another fit knows at its values, and a share of the others.
+void take_values(const FitSummary& known, FitSummary& fitted, double share_of_others = 1.0);
 
 /// Fit to convergence on the samples with `weights` 1. `width` is the default within in_parallel.
 [[nodiscard]] FitSummary refit(const SearchContext& context, const ParameterSubset& selection,

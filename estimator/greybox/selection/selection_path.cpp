@@ -80,23 +80,27 @@ std::vector<ModelStage> divided(const SearchContext& context, const ModelStage& 
   const auto first = static_cast<std::ptrdiff_t>(before.added.size());
   const std::vector<std::string> taken_at_once(joint.added.begin() + first, joint.added.end());
   if (taken_at_once.size() < 3) return {std::move(joint)};
+  const double joint_m = joint.fitted.validation_rms_m;
+  double least_m = (1.0 + worthwhile_at(context, joint_m)) * joint_m;
+  std::string dispensable;
+  ModelStage rest;
   for (const std::string& effect : taken_at_once) {
     if (context.cancelled()) break;
-    ModelStage rest = joint;
-    std::erase(rest.added, effect);
-    rest.fitted =
+    FitSummary without =
         refit(context, subset(joint.fitted, [&](const auto& p) { return !belongs_to(p, effect); }),
               context.problem.data.training_mask, wide(context.options.threads));
-    const double least_m = joint.fitted.validation_rms_m;
-    if (rest.fitted.validation_rms_m < (1.0 + worthwhile_at(context, least_m)) * least_m) {
-      std::erase(joint.added, effect);
-      joint.added.push_back(effect);
-      std::vector<ModelStage> steps = divided(context, before, std::move(rest));
-      steps.push_back(std::move(joint));
-      return steps;
-    }
+    if (without.validation_rms_m >= least_m) continue;
+    least_m = without.validation_rms_m;
+    dispensable = effect;
+    rest = ModelStage{joint.added, std::move(without)};
   }
-  return {std::move(joint)};
+  if (dispensable.empty()) return {std::move(joint)};
+  std::erase(rest.added, dispensable);
+  std::erase(joint.added, dispensable);
+  joint.added.push_back(dispensable);
+  std::vector<ModelStage> steps = divided(context, before, std::move(rest));
+  steps.push_back(std::move(joint));
+  return steps;
 }
 
 }  // namespace

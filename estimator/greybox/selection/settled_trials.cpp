@@ -145,13 +145,7 @@ class SettledTrials {
     ModelStage model;
     model.fitted.parameters = start.parameters;
     model.fitted.theta = start.start;
-    for (std::size_t i = 0; i < start.parameters.size(); ++i) {
-      const FreeParameter& p = start.parameters[i];
-      const double value = fitted.value(p.name);
-      if (!std::isfinite(value)) continue;
-      model.fitted.theta[static_cast<Eigen::Index>(i)] =
-          std::clamp(p.to_theta(value), p.lower, p.upper);
-    }
+    take_values(fitted, model.fitted);
     return model;
   }
 

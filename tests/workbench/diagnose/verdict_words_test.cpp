@@ -27,6 +27,17 @@ TEST(VerdictWords, WhatIsSureIsSaidApartFromWhatMayBe) {
   EXPECT_THAT(words, HasSubstr("perhaps missing too: null_bias"));
 }
 
+TEST(VerdictWords, AMisreadRecordIsOneWhenTimeIsUpToo) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::unexplained;
+  d.search.interrupted = true;
+  EXPECT_THAT(verdict_words(d), HasSubstr("Not decided"));
+  d.checks.emplace().wrong_scale = true;
+  ASSERT_TRUE(d.checks->misread());
+  EXPECT_THAT(verdict_words(d), HasSubstr("read the record as it says below first"));
+}
+
 TEST(VerdictWords, LawsThatComeNearAreNoAnswer) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/selection/first_stage.h"
@@ -16,9 +17,10 @@ using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
 /// An offset that an asymmetry takes back on average: the loop keeps the rod about its middle.
-diagnose_test::Rate hidden_offset(double offset_V, double asymmetry_ratio) {
+diagnose_test::Rate hidden_offset(double offset_V, double asymmetry_ratio, double band_V = 0.0) {
   return [=](double u_V, double, double) {
-    const double x_V = u_V + offset_V;
+    const double v_V = u_V + offset_V;
+    const double x_V = v_V - std::clamp(v_V, -band_V, band_V);
     return diagnose_test::kServoGain * (x_V + asymmetry_ratio * std::abs(x_V));
   };
 }
@@ -37,6 +39,28 @@ TEST(SelectionPath, TakesTwoThatMakeUpForEachOtherInOneStep) {
   const std::vector<ModelStage> kept = cross_validated_path(context, halves, path);
   ASSERT_THAT(kept, SizeIs(2));
   EXPECT_EQ(kept.back().added, path.back().added);
+}
+
+/// Path to an offset, the asymmetry that takes it back, and a dead band.
+std::vector<ModelStage> path_to_three(double hidden_band_V) {
+  const SearchContext context =
+      diagnose_test::servo_context({.rate_mps = hidden_offset(0.08, -0.1, hidden_band_V)});
+  const ModelStage first = first_stage(context);
+  return path_to(context, first,
+                 diagnose_test::stage_with(
+                     context, first,
+                     {{"deadband", hidden_band_V}, {"null_bias", 0.08}, {"flow_asymmetry", -0.1}}));
+}
+
+TEST(SelectionPath, TakesABystanderAfterTheTwoThatNeedEachOther) {
+  const std::vector<ModelStage> path = path_to_three(0.0);
+  ASSERT_THAT(path, SizeIs(3));
+  EXPECT_THAT(path[1].added, UnorderedElementsAre("null_bias", "flow_asymmetry"));
+  EXPECT_EQ(path[2].added.back(), "deadband");
+}
+
+TEST(SelectionPath, TakesThreeInOneStepWhereEachIsNeeded) {
+  EXPECT_THAT(path_to_three(0.02), SizeIs(2));
 }
 
 TEST(SelectionPath, TakesOneByOneWhatHelpsOneByOne) {
