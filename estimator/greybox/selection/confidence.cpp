@@ -286,15 +286,18 @@ bool is_another_plant(const Diagnosis& diagnosis) {
 }
 
 /// True where several of the plant's parameters had to be moved to their bounds, and more than the
-/// noise is left: effects beside them may share with them what another law does.
-bool is_strained(const Diagnosis& diagnosis) {
+/// noise is left, or the effect has made a simulation no better: it may share with them what
+/// another law does.
+bool is_strained(const Diagnosis& diagnosis, const std::string& effect) {
   constexpr double kAtNoise = 1.05;
   const auto is_bent = [](const ParameterValue& p) {
     return p.name.find('.') == std::string::npos && p.at_bound && p.value != 0.0;
   };
   const auto& all = diagnosis.parameters;
-  return diagnosis.rms_after_m > kAtNoise * diagnosis.floor_m() &&
-         std::count_if(all.begin(), all.end(), is_bent) > 1;
+  if (std::count_if(all.begin(), all.end(), is_bent) < 2) return false;
+  const std::size_t i = step_of(diagnosis, effect);
+  return diagnosis.rms_after_m > kAtNoise * diagnosis.floor_m() ||
+         (i > 0 && diagnosis.steps[i].validation_rms_m >= diagnosis.steps[i - 1].validation_rms_m);
 }
 
 /// Doubt by the error that remains: the effect's rivals, and how much it explains.
@@ -341,7 +344,7 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
     if (!doubt && error_remains && is_beyond_sense(diagnosis, effect)) doubt = Doubt::at_bound;
     if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
     if (!doubt && diagnosis.undriven.contains(effect)) doubt = Doubt::undriven;
-    if (!doubt && !error_remains && is_strained(diagnosis)) doubt = Doubt::strained;
+    if (!doubt && !error_remains && is_strained(diagnosis, effect)) doubt = Doubt::strained;
     if (!doubt && !error_remains && is_below_noise(diagnosis, effect)) doubt = Doubt::below_noise;
     if (!doubt && !error_remains && may_be_best_by_chance(diagnosis, effect)) {
       doubt = Doubt::chance;

@@ -69,9 +69,12 @@ SearchBranch begun_with(const SearchContext& context, const Candidate& candidate
   return {std::move(stage), {round}, false};
 }
 
+/// What is sought in the place of effects: a law by itself where these explain the record already.
+enum class LawsSought { alone, beside_others };
+
 /// A law, or a law beside an effect or another law, that explains the record.
 std::optional<SearchBranch> explaining(const SearchContext& context, const SearchStart& start,
-                                       const std::vector<Law>& laws) {
+                                       const std::vector<Law>& laws, LawsSought sought) {
   const std::vector<std::string> effects = names_of(context.problem.candidate_effects);
   const SearchContext alone = with_laws(context, laws, {});
   const SearchContext any = with_laws(context, laws, effects);
@@ -79,7 +82,7 @@ std::optional<SearchBranch> explaining(const SearchContext& context, const Searc
   add_effects(alone, single, 1);
   if (single.rounds.empty() || context.cancelled()) return {};
   if (is_explained(alone, single.stage)) return single;
-  if (!leaves_much_motion(alone, single.stage)) return {};
+  if (sought == LawsSought::alone || !leaves_much_motion(alone, single.stage)) return {};
   const auto completes = [&](const SearchContext& beside, SearchBranch& branch) {
     add_effects(beside, branch, 2);
     if (branch.stage.added.size() != 2) return false;
@@ -130,7 +133,8 @@ bool explain_by_laws(const SearchContext& context, const SearchStart& start, Dia
   const bool bent = is_explained(context, held) && makes_up(held, first.fitted.parameters.size());
   if (!bent && !leaves_much_motion(context, held)) return false;
   const std::vector<Law> laws = laws_of(context, held);
-  std::optional<SearchBranch> branch = explaining(context, start, laws);
+  std::optional<SearchBranch> branch =
+      explaining(context, start, laws, bent ? LawsSought::alone : LawsSought::beside_others);
   if (!branch || context.cancelled()) return false;
   LawSearch found{
       with_laws(context, with_rivals(laws, *branch), branch->stage.added), first, {}, {}};

@@ -143,6 +143,20 @@ TEST(Confidence, NothingIsEstablishedWhereMostOfThePlantIsAtItsBoundsAndAnErrorR
   EXPECT_THAT(d.established(), ElementsAre("friction"));
 }
 
+TEST(Confidence, BesideAPlantAtItsBoundsAnEffectHasToHelpASimulation) {
+  Diagnosis d = unexplained();
+  d.verdict = Verdict::missing;
+  d.by_innovations = true;
+  d.parameters[3].std_error = 0.1 * d.parameters[3].value;
+  for (const char* name : {"bulk_modulus_Pa", "supply_pressure_Pa"})
+    d.parameters.push_back({name, 1.0, std::nan(""), true});
+  d.noise_floor_m = d.rms_after_m = 1e-4;
+  d.steps = {{"", 5e-3}, {"friction", 0.98e-4}, {"backlash", 1e-4}};
+  EXPECT_THAT(named(d), ElementsAre("backlash strained"));
+  d.steps[1].validation_rms_m = 2e-4;
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, NothingIsEstablishedBesideALawThatOnlyComesNear) {
   Diagnosis d = unexplained();
   weigh_doubts(d);
