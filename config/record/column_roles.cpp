@@ -201,6 +201,12 @@ class Understanding {
       if (points > best_score - kNear && points > 0) rivals.push_back(i);
     }
     guess_[index_of(role)] = best;
+    if (role == Role::command && may_be_measured_force(columns_[best])) {
+      for (std::size_t i = 0; i < columns_.size(); ++i) {
+        const bool known = std::find(rivals.begin(), rivals.end(), i) != rivals.end();
+        if (!taken_.contains(i) && !known && may_drive_besides(columns_[i])) rivals.push_back(i);
+      }
+    }
     if (rivals.size() > 1) {
       std::vector<std::string> names;
       names.reserve(rivals.size());

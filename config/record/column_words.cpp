@@ -52,34 +52,13 @@ const Words kTimeWords{"t",        "time",     "zeit",      "timestamp*", "zeits
                        "tempo",    "tijd",     "messzeit*", "abtastzeit", "prüfzeit"};
 const Words kNoTimeWords{"cycle",  "task", "exec",     "execution", "delay", "turnaround",
                          "jitter", "rise", "settling", "dead",      "step",  "sample"};
-const Words kCommandWords{"u",
-                          "command*",
-                          "cmd",
-                          "stell*",
-                          "kommando*",
-                          "befehl*",
-                          "commande",
-                          "ansteuer*",
-                          "control",
-                          "controller",
-                          "ctrl",
-                          "drive",
-                          "manipulated",
-                          "valve",
-                          "servovalve",
-                          "ventil*",
-                          "regler*",
-                          "dac",
-                          "ao",
-                          "input",
-                          "eingang*",
-                          "comando",
-                          "mando",
-                          "steuerspannung*",
-                          "steuersignal*",
-                          "steuerstrom*",
-                          "sterownik*",
-                          "styr*"};
+const Words kCommandWords{"u",           "ao",           "cmd",           "dac",
+                          "ctrl",        "drive",        "valve",         "input",
+                          "mando",       "styr*",        "stell*",        "befehl*",
+                          "control",     "ventil*",      "regler*",       "comando",
+                          "command*",    "commande",     "eingang*",      "kommando*",
+                          "ansteuer*",   "controller",   "servovalve",    "sterownik*",
+                          "manipulated", "steuerstrom*", "steuersignal*", "steuerspannung*"};
 const Words kWeakCommandWords{"voltage*", "spannung*", "volt",   "volts",  "current*", "strom*",
                               "torque*",  "moment*",   "force*", "kraft*", "pwm",      "duty"};
 const Words kPositionWords{
@@ -91,19 +70,21 @@ const Words kPositionWords{
 const Words kWeakPositionWords{"x",        "output", "ausgang*", "out",  "phi",
                                "measured", "ist",    "height",   "höhe", "hoehe"};
 const Words kReferenceWords{
-    "ref",      "reference*",  "setpoint*", "sp",       "soll*",     "target*",   "demand*",
-    "desired",  "nominal*",    "wanted",    "set",      "des",       "sollwert*", "fuehrung*",
-    "führung*", "req",         "request*",  "vorgabe*", "consigne*", "consigna*", "cible",
-    "objetivo", "riferimento", "börvärde*", "gewenst*", "planned",   "profile",   "trajectory",
-    "traj",     "interpolat*", "commanded", "wunsch*",  "preset",    "virtual",   "yref",
-    "xref",     "posref",      "yset",      "xset",     "posset",    "ysp",       "ydes",
-    "xdes",     "posdes",      "yd",        "xd"};
+    "ref",      "reference*",  "setpoint*",    "sp",       "soll*",     "target*",   "demand*",
+    "desired",  "nominal*",    "wanted",       "set",      "des",       "sollwert*", "fuehrung*",
+    "führung*", "req",         "request*",     "vorgabe*", "consigne*", "consigna*", "cible",
+    "objetivo", "riferimento", "börvärde*",    "gewenst*", "planned",   "profile",   "trajectory",
+    "traj",     "interpolat*", "commanded",    "wunsch*",  "preset",    "virtual",   "yref",
+    "xref",     "posref",      "yset",         "xset",     "posset",    "ysp",       "ydes",
+    "xdes",     "posdes",      "yd",           "xd",       "deseada",   "deseado",   "desejada",
+    "desejado", "theoretical", "theoretisch*", "generator"};
 const Words kOtherWords{
     "error*",  "err",    "fehler*",   "deviation", "abweich*",  "velocity*", "vel",    "speed*",
     "geschw*", "accel*", "pressure*", "druck*",    "temp*",     "supply",    "limit",  "min",
     "max",     "model*", "sim*",      "estimat*",  "observer*", "offset",    "status", "tank",
     "diff*",   "delta",  "lag",       "following", "tolerance", "toleranz*", "window", "predict*",
-    "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*"};
+    "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*",  "std",    "stdev",
+    "stddev",  "sigma",  "variance",  "varianz",   "remaining", "verbleib*"};
 /// Words of what a drive with a loop of its own is asked for.
 const Words kSpeedWords{"speed*", "velocity*", "geschw*", "drehzahl*"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
@@ -117,7 +98,8 @@ const Words kNoDriveWords{
     "battery",    "batterie*",     "zwischenkreis*", "mains",       "netz",       "netzspannung*",
     "netzstrom*", "netzteil*",     "versorg*",       "sensor*",     "brake",      "bremse*",
     "bus",        "relief",        "load*",          "last",        "lastkraft*", "lastmoment*",
-    "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*", "belast*"};
+    "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*", "belast*",
+    "ff",         "feedforward*"};
 /// Words of a sensor's voltage or force, unless another word speaks of a command.
 const Words kSensorWords{"bridge", "excitation", "cell"};
 /// Words of a supply, unless the supplied drive is named: "DC motor voltage", "Link motor torque".
@@ -267,7 +249,8 @@ bool names_reference(std::string_view name) { return has_word(words_of(name), kR
 
 bool is_reference(const ReadColumn& column) {
   // The letters of control engineering, alone: r and y_d, and w in German.
-  constexpr std::array<std::string_view, 4> kLetters{"r", "w", "yd", "xd"};
+  constexpr std::array<std::string_view, 10> kLetters{"r",  "w",  "yd",     "xd",   "qd",
+                                                      "yt", "xt", "thetad", "phid", "qt"};
   const std::string name = folded(column.text.name);
   return has_word(column.words, kReferenceWords) ||
          std::find(kLetters.begin(), kLetters.end(), name) != kLetters.end();
@@ -317,6 +300,22 @@ bool is_drive_set_point(const ReadColumn& column) {
   const bool drives = electric || si == "N" || si == "Nm";
   return asked && drives && may_drive(column) && !is_measured(column) &&
          !has_word(words, kOtherWords) && !has_word(words, kPositionWords);
+}
+
+bool may_be_measured_force(const ReadColumn& column) {
+  const std::string& si = column.text.unit.si;
+  return (si == "N" || si == "Nm") && !has_word(column.words, kCommandWords) &&
+         !has_word(column.words, kMotorWords);
+}
+
+bool may_drive_besides(const ReadColumn& column) {
+  const std::string& si = column.text.unit.si;
+  const bool electric = si == "V" || si == "A" || si == "pct";
+  const bool moves = si == "m" || si == "rad";
+  return column.numbers && may_drive(column) && is_plain(column) && !is_spool(column) &&
+         !is_measured(column) && !has_word(column.words, kSensorWords) &&
+         ((electric && !has_word(column.words, kPositionWords)) ||
+          (moves && has_word(column.words, kCommandWords)));
 }
 
 bool is_commanded(const ReadColumn& column) { return has_word(column.words, kCommandWords); }

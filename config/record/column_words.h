@@ -61,6 +61,11 @@ struct ReadColumn {
 [[nodiscard]] bool is_drive_set_point(const ReadColumn& column);
 /// True where no word speaks of a supply, a brake, a load, a relief valve or a sensor.
 [[nodiscard]] bool may_drive(const ReadColumn& column);
+/// True for a force or torque whose name does not say that it is commanded: a load cell's.
+[[nodiscard]] bool may_be_measured_force(const ReadColumn& column);
+/// True for a signal that may be the command where a force stands beside it: "Servo [V]", or a
+/// commanded position.
+[[nodiscard]] bool may_drive_besides(const ReadColumn& column);
 /// True where a word speaks of a command: a commanded position is no measured one.
 [[nodiscard]] bool is_commanded(const ReadColumn& column);
 /// True where a word speaks of an angle.

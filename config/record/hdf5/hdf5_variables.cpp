@@ -50,6 +50,35 @@ std::optional<std::string> text_attribute(hid_t object, const char* name) {
   return text;
 }
 
+/// The number of an attribute, `otherwise` where there is none.
+double number_attribute(hid_t object, const char* name, double otherwise) {
+  if (H5Aexists(object, name) <= 0) return otherwise;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) return otherwise;
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  const H5T_class_t kind = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
+  double value = otherwise;
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) ||
+      H5Sget_simple_extent_npoints(space.get()) != 1 ||
+      H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) {
+    return otherwise;
+  }
+  return value;
+}
+
+/// Unpacks numbers as the conventions of NetCDF (CF 8.1) state them: scale_factor and add_offset.
+void unpack(hid_t dataset, MatVariable& variable) {
+  const double factor = number_attribute(dataset, "scale_factor", 1.0);
+  const double offset = number_attribute(dataset, "add_offset", 0.0);
+  if (factor == 1.0 && offset == 0.0) return;
+  const auto unpack_all = [&](std::vector<double>& values) {
+    for (double& value : values) value = factor * value + offset;
+  };
+  unpack_all(variable.values);
+  for (MatVariable& column : variable.fields) unpack_all(column.values);
+}
+
 class FileReader {
  public:
   explicit FileReader(const std::string& name) : name_(name) {
@@ -128,6 +157,7 @@ class FileReader {
     } else if (kind == H5T_INTEGER || kind == H5T_FLOAT) {
       variable.type = "number";
       read_numbers(dataset, dims, variable);
+      unpack(dataset, variable);
     } else {
       variable.type = kind == H5T_STRING ? "text" : "no number";
     }

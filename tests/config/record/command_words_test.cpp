@@ -41,6 +41,31 @@ TEST(Words, OfAMotorAreThoseOfADrive) {
   }
 }
 
+TEST(Words, OfAForceMayBeALoadCellsWhereAnotherSignalMayDrive) {
+  EXPECT_EQ(read(with_columns("Actuator force [N]")).u_V[1], 2.0);
+  for (const char* other : {"Servo [V]", "Axial Command [mm]"}) {
+    EXPECT_THAT(error_of(with_columns(std::string("Actuator force [N],") + other)),
+                HasSubstr(std::string("the command may be Actuator force [N] or ") + other));
+  }
+  // a motor's drives, and what no rod is driven by does not contend
+  EXPECT_EQ(read(with_columns("Motor force [N],Servo [V]")).u_V[1], 2.0);
+  EXPECT_EQ(read(with_columns("Force [N],Battery voltage [V]")).u_V[1], 2.0);
+}
+
+TEST(Words, OfWhatIsNoMeasurementAreNoPosition) {
+  for (const char* position :
+       {"Position std [mm]", "Theoretical position [mm]", "Generator position [mm]",
+        "Posición deseada [mm]", "Remaining stroke [mm]", "q_d [rad]", "x_t [mm]"}) {
+    const std::string text =
+        std::string("Time [s],Command [V],") + position + "\n0,1,2\n1,2,3\n2,1,2\n";
+    EXPECT_THAT(error_of(text), AllOf(HasSubstr("lacks a position column"),
+                                      Not(HasSubstr(std::string("y=") + position[0]))))
+        << position;
+  }
+  EXPECT_THAT(error_of(with_columns("Feedforward command [V]")),
+              HasSubstr("lacks a command column"));
+}
+
 TEST(Words, OfALoadABusOrABrakeAreNoCommandWhateverStandsBeside) {
   for (const char* other :
        {"Motor load torque [Nm]", "Load motor current [A]", "Motor bus voltage [V]",

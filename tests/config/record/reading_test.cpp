@@ -75,6 +75,8 @@ TEST(UnitText, FindsTheUnitInAHeader) {
   EXPECT_EQ(parts("Position (rod)"), "Position (rod)|");
   EXPECT_EQ(parts("Channel A"), "Channel A|");
   EXPECT_EQ(parts("pressure_in"), "pressure_in|");  // no inches
+  EXPECT_EQ(parts("Position (\")"), "Position|m");
+  EXPECT_EQ(parts("Torque [lbf in]"), "Torque|Nm");
   EXPECT_EQ(parts("y_in"), "y|m");
   EXPECT_EQ(parts("y_min"), "y_min|");  // no minutes
   EXPECT_EQ(parts("Position [counts]"), "Position|");

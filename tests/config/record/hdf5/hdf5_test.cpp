@@ -91,6 +91,15 @@ class Hdf5 : public testing::Test {
     H5Sclose(space);
   }
 
+  static void set_number(hid_t object, const char* name, double value) {
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t attribute =
+        H5Acreate2(object, name, H5T_NATIVE_DOUBLE, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
+    H5Aclose(attribute);
+    H5Sclose(scalar);
+  }
+
   /// An object of a class of MATLAB's: numbers that point into #subsystem#.
   static void write_object(hid_t group, const char* name, const std::string& of_class) {
     const hsize_t dims[] = {6, 1};
@@ -120,6 +129,21 @@ class Hdf5 : public testing::Test {
   std::vector<double> u_V_;
   std::vector<double> y_mm_;
 };
+
+TEST_F(Hdf5, UnpacksScaledNumbers) {
+  const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  std::vector<double> packed;
+  for (const double y_mm : y_mm_) packed.push_back((y_mm - 300.0) / 0.25);
+  write_vector(file, "t_s", t_s_);
+  write_vector(file, "u_V", u_V_);
+  write_vector(file, "y_mm", packed);
+  const hid_t position = H5Dopen2(file, "y_mm", H5P_DEFAULT);
+  set_number(position, "scale_factor", 0.25);
+  set_number(position, "add_offset", 300.0);
+  H5Dclose(position);
+  H5Fclose(file);
+  expect_the_motion(read());
+}
 
 TEST_F(Hdf5, ReadsVectorsOfVersion73) {
   write_mat({column("t_s", t_s_), column("u_V", u_V_), column("y_mm", y_mm_)});
