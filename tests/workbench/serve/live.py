@@ -63,6 +63,7 @@ def watch(args, folder):
                 page.picture(args.pictures / "live.png")
             page.choose(".tools select", "5")
             page.choose("#trigger-mode", "single")
+            page.wait("+document.querySelector('#trigger-level').value > 100")  # that of the picture, mm
             page.choose("#trigger-window_s", "10")
             page.choose("#trigger-before_ratio", "0")
             page.type("#trigger-level", "305", "change")

@@ -306,7 +306,7 @@ export function Live({feed, link, state, openWorkbench}) {
           ${view && html`<button onClick=${() => setView(null)}>
             ${captured && capture ? 'Whole capture' : 'Back to live'}</button>`}
         </p>
-        <${TriggerTools} status=${status} channels=${channels} capture=${capture} onSaved=${setSaved}
+        <${TriggerTools} status=${status} channels=${channels} meters=${meters} capture=${capture} onSaved=${setSaved}
           onShow=${(on) => { setView(null); showCaptured(on); }} />
         ${captured && capture && html`
           <p class="captured">capture ${capture.number}: ${capture.samples} samples, crossing at ${clockOf(capture.t0)}

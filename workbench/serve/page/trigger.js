@@ -8,8 +8,9 @@ const STATES = {off: '', waiting: 'waiting for the crossing', capturing: 'captur
 
 const UNDERWAY_MS = 2000;
 
-/// status: the server's {mode, channel, ..., state}, which all pages share; channels: those of the stream.
-export function TriggerTools({status, channels, capture, onShow, onSaved}) {
+/// status: the server's {mode, channel, ..., state}, which all pages share; channels: those of the stream; meters:
+/// {mean} of each channel in the picture, which the level starts at.
+export function TriggerTools({status, channels, meters, capture, onShow, onSaved}) {
   const [settings, setSettings] = useState(FIRST);
   const [said, say] = useState('');
   const server = status && status.trigger;
@@ -35,6 +36,9 @@ export function TriggerTools({status, channels, capture, onShow, onSaved}) {
   };
   const set = (change) => {
     const next = {...settings, ...change};
+    const meter = meters[next.channel];
+    const starts = settings.mode === 'off' && !settings.level;
+    if (meter && ('channel' in change || starts)) next.level = +meter.mean.toPrecision(4);
     setSettings(next);
     sent.current = {text: JSON.stringify(of(next)), at: Date.now()};
     attempt(() => post('trigger', next));
