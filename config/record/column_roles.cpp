@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/record/column_words.h"
+#include "config/record/command_doubt.h"
 #include "config/record/further_names.h"
 #include "config/record/layout.h"
 #include "config/record/map_terms.h"
@@ -216,6 +217,12 @@ class Understanding {
       return;
     }
     const ReadColumn& column = columns_[best];
+    if (role == Role::command) {
+      if (const std::string doubt = doubt_of_command(column); !doubt.empty()) {
+        problems_.push_back(noun() + column.header + " " + doubt);
+        return;
+      }
+    }
     UnitText unit = column.text.unit;
     if (role == Role::time && (column.clock || (unit.text.empty() && head_.time_in_s))) {
       unit = parse_unit("s");

@@ -2,71 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
+#include "config/record/header_words.h"
 #include "config/record/text_fields.h"
 #include "config/record/unit_cells.h"
 
 namespace config::record {
 namespace {
 
-using Words = std::vector<std::string_view>;
-
-/// "Valve cmdVoltage_1" as "valve", "cmd", "voltage", "1".
-std::vector<std::string> words_of(std::string_view name) {
-  std::vector<std::string> words(1);
-  char before = 0;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool letter = byte >= 0x80 || std::isalpha(byte) != 0;
-    const bool digit = std::isdigit(byte) != 0;
-    const auto last = static_cast<unsigned char>(before);
-    const bool was_digit = std::isdigit(last) != 0;
-    const bool hump = std::isupper(byte) != 0 && std::islower(last) != 0;
-    if ((!letter && !digit) || hump || (before != 0 && digit != was_digit)) {
-      if (!words.back().empty()) words.emplace_back();
-    }
-    if (letter || digit) words.back() += static_cast<char>(std::tolower(byte));
-    before = letter || digit ? c : 0;
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
-/// Any of `wanted` among the words; those that end in * may begin or end a longer word.
-bool has_word(const std::vector<std::string>& words, const Words& wanted) {
-  for (const std::string& word : words) {
-    for (const std::string_view want : wanted) {
-      if (want.ends_with('*') ? word.find(want.substr(0, want.size() - 1)) != std::string::npos
-                              : word == want) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 const Words kTimeWords{"t",        "time",     "zeit",      "timestamp*", "zeitstempel*",
                        "elapsed*", "sekunden", "temps",     "tid",        "tiempo",
                        "tempo",    "tijd",     "messzeit*", "abtastzeit", "prüfzeit"};
 const Words kNoTimeWords{"cycle",  "task", "exec",     "execution", "delay", "turnaround",
                          "jitter", "rise", "settling", "dead",      "step",  "sample"};
-const Words kCommandWords{"u",           "ao",           "cmd",           "dac",
-                          "ctrl",        "drive",        "valve",         "input",
-                          "mando",       "styr*",        "stell*",        "befehl*",
-                          "control",     "ventil*",      "regler*",       "comando",
-                          "command*",    "commande",     "eingang*",      "kommando*",
-                          "ansteuer*",   "controller",   "servovalve",    "sterownik*",
-                          "manipulated", "steuerstrom*", "steuersignal*", "steuerspannung*"};
-const Words kWeakCommandWords{"voltage*", "spannung*", "volt",   "volts",  "current*", "strom*",
-                              "torque*",  "moment*",   "force*", "kraft*", "pwm",      "duty"};
-const Words kPositionWords{
-    "y",        "pos",       "position*", "displacement*", "stroke",   "weg*",     "hub",
-    "lage",     "rod",       "piston*",   "kolben*",       "angle",    "winkel*",  "theta",
-    "encoder*", "lvdt",      "travel",    "extension",     "istwert",  "rotation", "posicion",
-    "posición", "posizione", "corsa",     "stellung*",     "opening*", "öffnung*", "läge",
-    "lageist*", "positie",   "course",    "déplacement"};
 const Words kWeakPositionWords{"x",        "output", "ausgang*", "out",  "phi",
                                "measured", "ist",    "height",   "höhe", "hoehe"};
 const Words kReferenceWords{
@@ -79,12 +28,14 @@ const Words kReferenceWords{
     "xdes",     "posdes",      "yd",           "xd",       "deseada",   "deseado",   "desejada",
     "desejado", "theoretical", "theoretisch*", "generator"};
 const Words kOtherWords{
-    "error*",  "err",    "fehler*",   "deviation", "abweich*",  "velocity*", "vel",    "speed*",
-    "geschw*", "accel*", "pressure*", "druck*",    "temp*",     "supply",    "limit",  "min",
-    "max",     "model*", "sim*",      "estimat*",  "observer*", "offset",    "status", "tank",
-    "diff*",   "delta",  "lag",       "following", "tolerance", "toleranz*", "window", "predict*",
-    "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*",  "std",    "stdev",
-    "stddev",  "sigma",  "variance",  "varianz",   "remaining", "verbleib*"};
+    "error*",     "err",         "fehler*", "deviation", "abweich*", "velocity*", "vel",
+    "speed*",     "geschw*",     "accel*",  "pressure*", "druck*",   "temp*",     "supply",
+    "limit",      "min",         "max",     "model*",    "sim*",     "estimat*",  "observer*",
+    "offset",     "status",      "tank",    "diff*",     "delta",    "lag",       "following",
+    "tolerance",  "toleranz*",   "window",  "predict*",  "pump",     "pumpe*",    "pumpen*",
+    "swash*",     "joystick*",   "pedal*",  "lever",     "hebel*",   "handle",    "knob",
+    "electrical", "elektrisch*", "swivel*", "schwenk*",  "std",      "stdev",     "stddev",
+    "sigma",      "variance",    "varianz", "remaining", "verbleib*"};
 /// Words of what a drive with a loop of its own is asked for.
 const Words kSpeedWords{"speed*", "velocity*", "geschw*", "drehzahl*"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
@@ -92,19 +43,18 @@ const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
 const Words kPressureWords{"pressure*", "press", "druck*"};
 /// Words of the valve, whose position is not the rod's and whose reading is no command.
 const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
-const Words kValveWords{"valve*", "servovalve", "ventil*", "sv"};
 /// Words of a signal that drives no rod, whatever else its name says. "Plastic" is no "Last".
 const Words kNoDriveWords{
     "battery",    "batterie*",     "zwischenkreis*", "mains",       "netz",       "netzspannung*",
     "netzstrom*", "netzteil*",     "versorg*",       "sensor*",     "brake",      "bremse*",
     "bus",        "relief",        "load*",          "last",        "lastkraft*", "lastmoment*",
     "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*", "belast*",
-    "ff",         "feedforward*"};
+    "ff",         "feedforward*",  "heater*",        "heiz*",       "fan",        "lüfter*",
+    "cooler",     "cooling",       "kühl*",          "dither",      "lamp",       "disturbance*"};
 /// Words of a sensor's voltage or force, unless another word speaks of a command.
 const Words kSensorWords{"bridge", "excitation", "cell"};
 /// Words of a supply, unless the supplied drive is named: "DC motor voltage", "Link motor torque".
 const Words kSupplyWords{"dc", "link"};
-const Words kMotorWords{"motor*", "drive", "antrieb*"};
 /// Words of a valve's signal that is none of its sensor's.
 const Words kValveCommandWords{"u",        "command*",  "cmd",      "kommando*",  "befehl*",
                                "commande", "ansteuer*", "ctrl",     "controller", "dac",
@@ -249,8 +199,8 @@ bool names_reference(std::string_view name) { return has_word(words_of(name), kR
 
 bool is_reference(const ReadColumn& column) {
   // The letters of control engineering, alone: r and y_d, and w in German.
-  constexpr std::array<std::string_view, 10> kLetters{"r",  "w",  "yd",     "xd",   "qd",
-                                                      "yt", "xt", "thetad", "phid", "qt"};
+  constexpr std::array<std::string_view, 14> kLetters{
+      "r", "w", "yd", "xd", "qd", "yt", "xt", "thetad", "phid", "qt", "posd", "yr", "xr", "qr"};
   const std::string name = folded(column.text.name);
   return has_word(column.words, kReferenceWords) ||
          std::find(kLetters.begin(), kLetters.end(), name) != kLetters.end();

@@ -121,13 +121,15 @@ bool has_any(const std::string& word, const auto& parts) {
 /// "Offset", "Nullpunkt": a number that is added.
 bool is_offset_word(std::string_view field) {
   constexpr std::array<std::string_view, 4> kParts{"offset", "nullpunkt", "zeropoint", "intercept"};
-  return has_any(folded(field), kParts) && folded(field).find("vertical") == std::string::npos;
+  const std::string word = folded(field);
+  return word == "zero" || word == "bias" ||
+         (has_any(word, kParts) && word.find("vertical") == std::string::npos);
 }
 
 /// "Factor", "Scale", "Gain [mm/V]": a number that multiplies. An oscilloscope's vertical scale is
 /// that of its screen, a controller's gain a setting.
 bool is_factor_word(std::string_view field) {
-  constexpr std::array<std::string_view, 12> kParts{"factor",
+  constexpr std::array<std::string_view, 13> kParts{"factor",
                                                     "faktor",
                                                     "facteur",
                                                     "gain",
@@ -138,12 +140,16 @@ bool is_factor_word(std::string_view field) {
                                                     "slope",
                                                     "empfindlich",
                                                     "verst\xC3\xA4rkung",
-                                                    "ratio"};
-  // "Duration" and "calibration" are no ratios.
-  constexpr std::array<std::string_view, 8> kOthers{
-      "vertical", "horizontal", "vscale", "hscale", "controller", "regler", "ration", "against"};
+                                                    "conversion",
+                                                    "umrechnung"};
+  constexpr std::array<std::string_view, 7> kOthers{"vertical",   "horizontal", "vscale", "hscale",
+                                                    "controller", "regler",     "against"};
   const std::string word = folded(field);
-  return !is_limit_word(field) && has_any(word, kParts) && !has_any(word, kOthers);
+  if (is_limit_word(field) || has_any(word, kOthers)) return false;
+  // "duration" and "calibration" are no ratios
+  const bool ratio =
+      word.find("ratio") != std::string::npos && word.find("ration") == std::string::npos;
+  return ratio || word == "sign" || word == "vorzeichen" || word == "lsb" || has_any(word, kParts);
 }
 
 /// True for a number beside a word of factors or offsets that changes a value.

@@ -193,6 +193,7 @@ class MatReader {
       FileColumn column;
       column.header = printable(variable->name);
       column.unit = variable->unit;
+      column.factor = variable->factor;
       const std::size_t shown = std::min<std::size_t>(60, variable->values.size());
       column.sample.assign(variable->values.begin(),
                            variable->values.begin() + static_cast<std::ptrdiff_t>(shown));

@@ -25,6 +25,7 @@ struct MatVariable {
   bool numeric = false;           ///< an array of numbers, logical ones included
   bool complex = false;
   std::string unit;                 ///< as the file states it; empty: it does not
+  std::string factor;               ///< "has the attribute gain 0.01": not applied; empty: none
   std::vector<double> values;       ///< numeric vector (at most one extent above 1)
   std::vector<MatVariable> fields;  ///< structure that is no array
 };

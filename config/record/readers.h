@@ -34,6 +34,11 @@ class TextWindow;
 /// True for the first bytes of an HDF5 file, MATLAB's version 7.3 among them.
 [[nodiscard]] bool is_hdf5(std::string_view head) noexcept;
 
+/// True for the byte order mark of text in UTF-16, which the unicode text of a spreadsheet has.
+[[nodiscard]] constexpr bool is_utf16(std::string_view head) noexcept {
+  return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+}
+
 /// True for the first bytes of an LCM event log.
 [[nodiscard]] bool is_lcm_log(std::string_view head) noexcept;
 

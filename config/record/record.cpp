@@ -9,6 +9,7 @@
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
 #include "config/schema/read_file.h"
+#include "config/units/quantity.h"
 
 namespace config::record {
 namespace {
@@ -113,7 +114,7 @@ Record read_file(const std::filesystem::path& file, const ReadOptions& options) 
   if (const char* what = other_format(head)) {
     throw schema::bad_data(file.string(), what, std::string(kForms) + "; export it as CSV");
   }
-  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
+  if (is_utf16(head)) {
     const std::string utf8 = utf8_of(all());
     TextWindow held(utf8);
     return read_csv(held, file.string(), options);
@@ -125,10 +126,22 @@ Record read_file(const std::filesystem::path& file, const ReadOptions& options) 
   return read_csv(window, file.string(), options);
 }
 
+/// Refuses a length where the model turns; a column y_m without another unit may hold rad.
+void require_the_axis_kind(const Record& record) {
+  if (record.position_unit != "m" || units::axis_unit("m") == "m") return;
+  for (const ChannelOrigin& origin : record.origins) {
+    if (origin.name != "y_m" || origin.unit.empty() || origin.unit == "m") continue;
+    throw schema::bad_data(record.name,
+                           "has a position in " + origin.unit + ", but the model's axis turns",
+                           "an angle, or --map 'y=" + origin.header + "[rad]' where it is one");
+  }
+}
+
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
   Record record = read_file(file, options);
+  require_the_axis_kind(record);
   take_command(record, options);
   return record;
 }

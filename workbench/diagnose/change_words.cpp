@@ -75,6 +75,19 @@ std::string beside_changes(const selection::Diagnosis& d) {
   return names_words(d, established) + (established.size() > 1 ? " are" : " is") + " missing, and ";
 }
 
+/// "reading_scale is a position sensor whose scale is off." for the changes of what the library
+/// has no effect for.
+std::string law_words(const selection::Diagnosis& d) {
+  std::string text;
+  for (const plant_sim::formula::FormulaEffect& law : d.better.formula_effects) {
+    const bool changes = std::any_of(d.changing.begin(), d.changing.end(), [&](const auto& change) {
+      return change.parameter.starts_with(law.name + ".");
+    });
+    if (changes) text += " " + law.name + ": " + law.what + ".";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string changing_words(const selection::Diagnosis& d) {
@@ -85,7 +98,7 @@ std::string changing_words(const selection::Diagnosis& d) {
     text += " A change of " + config::schema::listed(change.rivals, "or") + " in place of " +
             change.parameter + " would explain it about as well.";
   }
-  return text;
+  return text + law_words(d);
 }
 
 }  // namespace workbench::diagnose

@@ -21,7 +21,7 @@ constexpr std::size_t kLooked[] = {8U << 10U, 256U << 10U,
 /// By the first line that says something; none: it is not in `begin`, the file's first bytes.
 std::optional<FileKind> kind_by_line(const std::string& begin, bool whole) {
   static const std::regex toml_line(R"(\s*(\[|[\w."'-]+\s*=).*)");
-  static const std::regex csv_line(R"([^=]*,[^=]*)");
+  static const std::regex csv_line(R"([^=]*[,;\t][^=]*)");
   std::istringstream in(begin);
   std::string line;
   for (int i = 0; i < kComments && std::getline(in, line); ++i) {
@@ -46,7 +46,7 @@ FileKind kind_of(const std::string& file) {
     const std::string begin = config::schema::read_head(file, bytes).text;
     const std::string_view head = std::string_view(begin).substr(0, 128);
     if (config::record::is_lcm_log(head) || config::record::is_mat_file(head) ||
-        config::record::other_mat_format(head) != nullptr) {
+        config::record::other_mat_format(head) != nullptr || config::record::is_utf16(head)) {
       return FileKind::record;
     }
     if (const auto kind = kind_by_line(begin, begin.size() < bytes)) return *kind;

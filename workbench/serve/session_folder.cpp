@@ -5,8 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <string>
+#include <string_view>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
@@ -47,7 +51,14 @@ std::string kind_of(const fs::path& file) {
     case files::FileKind::other:
       break;
   }
-  return "other";
+  // rows below a page of text, or a format of which only the reader knows
+  constexpr std::array<std::string_view, 6> kRecords{".csv", ".txt", ".tsv",
+                                                     ".dat", ".asc", ".log"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool may_be = std::find(kRecords.begin(), kRecords.end(), ending) != kRecords.end();
+  return may_be ? "record" : "other";
 }
 
 /// The first `bytes` bytes of UTF-8 text, whole characters only.

@@ -1,14 +1,18 @@
 #include "config/record/hdf5/hdf5_variables.h"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "config/record/hdf5/handle.h"
+#include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
 namespace config::record::hdf5 {
@@ -77,6 +81,40 @@ void unpack(hid_t dataset, MatVariable& variable) {
   };
   unpack_all(variable.values);
   for (MatVariable& column : variable.fields) unpack_all(column.values);
+}
+
+/// Calls `take` with the name of each of an object's attributes.
+template <class Take>
+void for_each_attribute(hid_t object, Take take) {
+  const auto one = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
+    (*static_cast<Take*>(into))(std::string(name));
+    return 0;
+  };
+  hsize_t from = 0;
+  (void)H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &from, one, &take);
+}
+
+/// "has the attribute gain 0.01": numbers that convert the values, of whatever convention; empty:
+/// none, or all change nothing. Those of NetCDF are applied (unpack()).
+std::string conversion_words(hid_t dataset) {
+  constexpr std::array<std::string_view, 9> kFactors{"gain",       "slope",       "conversion",
+                                                     "scale",      "scalefactor", "factor",
+                                                     "multiplier", "calibration", "sensitivity"};
+  constexpr std::array<std::string_view, 3> kOffsets{"offset", "intercept", "bias"};
+  std::string words;
+  for_each_attribute(dataset, [&](const std::string& name) {
+    if (name == "scale_factor" || name == "add_offset") return;
+    const std::string word = folded(name);
+    const bool factor = std::find(kFactors.begin(), kFactors.end(), word) != kFactors.end();
+    const bool offset = std::find(kOffsets.begin(), kOffsets.end(), word) != kOffsets.end();
+    if (!factor && !offset) return;
+    const double nothing = factor ? 1.0 : 0.0;
+    const double value = number_attribute(dataset, name.c_str(), nothing);
+    if (value == nothing) return;
+    words +=
+        (words.empty() ? "has the attribute " : " and ") + name + " " + fmt::format("{:g}", value);
+  });
+  return words;
 }
 
 class FileReader {
@@ -158,6 +196,8 @@ class FileReader {
       variable.type = "number";
       read_numbers(dataset, dims, variable);
       unpack(dataset, variable);
+      variable.factor = conversion_words(dataset);
+      for (MatVariable& column : variable.fields) column.factor = variable.factor;
     } else {
       variable.type = kind == H5T_STRING ? "text" : "no number";
     }

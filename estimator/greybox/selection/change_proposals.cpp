@@ -150,9 +150,9 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
   const FitSummary& fitted = stage.model.fitted;
   ParameterSubset all = subset(fitted, [](const auto&) { return true; });
   double theta = 0.0;
-  if (score.absent) {
+  if (score.absent && !score.sets_in) {
     append(all, {{score.parameter}, Eigen::VectorXd::Zero(1)});
-  } else {
+  } else if (!score.absent) {
     for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
       if (fitted.parameters[i].name != score.parameter.name) continue;
       theta = fitted.theta[static_cast<Eigen::Index>(i)];

@@ -40,6 +40,7 @@ constexpr double kHeldRange = 2.3;
 struct Columns {
   std::vector<FreeParameter> parameters;
   std::vector<bool> unfitted;  ///< the model has no freedom of this parameter
+  std::vector<bool> sets_in;   ///< nor is it sought but by its change
   MatrixXd values;
   VectorXd rest;  ///< the innovations, and the distances from the priors
 
@@ -99,9 +100,15 @@ void add_unfitted(const InnovationStage& stage, Columns& columns) {
           (residuals_m.col(i) - fitted.residual_m) / (kSmall * floor_m);
     }
   }
+  const auto is_law = [&](const FreeParameter& size) {
+    const auto& laws = context.problem.model.formula_effects;
+    return std::any_of(laws.begin(), laws.end(),
+                       [&](const auto& law) { return law.name == effect_of(size); });
+  };
   for (const FreeParameter& size : sizes) {
     columns.parameters.push_back(size);
     columns.unfitted.push_back(true);
+    columns.sets_in.push_back(is_law(size));
   }
 }
 
@@ -110,8 +117,9 @@ Columns columns_of(const InnovationStage& stage) {
   const double floor_m = stage.context.problem.data.noise_floor_m;
   const Index samples = fitted.residual_m.size();
   const Index own = fitted.jacobian.cols();
-  Columns columns{fitted.parameters, std::vector<bool>(fitted.parameters.size(), false),
-                  MatrixXd::Zero(samples + own, own), VectorXd::Zero(samples + own)};
+  const std::vector<bool> none(fitted.parameters.size(), false);
+  Columns columns{fitted.parameters, none, none, MatrixXd::Zero(samples + own, own),
+                  VectorXd::Zero(samples + own)};
   columns.values.topRows(samples) = fitted.jacobian / floor_m;
   columns.rest.head(samples) = fitted.residual_m / floor_m;
   for (Index i = 0; i < own; ++i) {
@@ -274,8 +282,9 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     if (columns.parameters[i].name.starts_with("change."))
       continue;  // part of a change found before
     const VectorXd column = columns.values.col(c);
-    const Course course(basis, rest, column, columns.unfitted[i]);
-    ChangeScore score{columns.parameters[i], columns.absent(i)};
+    const bool sets_in = columns.sets_in[i];
+    const Course course(basis, rest, column, columns.unfitted[i] && !sets_in);
+    ChangeScore score{columns.parameters[i], columns.absent(i), sets_in};
     score.throughout_nats = course.throughout_nats();
     ChangeScore step = score;
     const Index at = course.score_steps(grid, t_s.size(), step);
@@ -328,7 +337,7 @@ std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
             .segment(static_cast<Index>(data.starts[r]), static_cast<Index>(data.records[r].size()))
             .setOnes();
       }
-      ChangeScore score{columns.parameters[i], columns.absent(i), ChangeKind::record};
+      ChangeScore score{columns.parameters[i], columns.absent(i), false, ChangeKind::record};
       score.record = name;
       course.score(within, score);
       scores.push_back(std::move(score));

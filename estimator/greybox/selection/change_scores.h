@@ -18,7 +18,8 @@ namespace estimator::greybox::selection {
 
 struct ChangeScore {
   FreeParameter parameter;
-  bool absent = false;  ///< the size of an effect that the model does not have
+  bool absent = false;   ///< the size of an effect that the model does not have
+  bool sets_in = false;  ///< nothing before the change, as a law whose size cannot be seen
   ChangeKind kind = ChangeKind::step;
   double at_s = 0.0;
   double duration_s = 0.0;

@@ -9,6 +9,7 @@
 #include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/change_rivals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
+#include "estimator/greybox/selection/law_search.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -297,6 +298,33 @@ FoundChanges changes_from(ChangeSearch search, const std::vector<ChangeProposal>
   return result;
 }
 
+/// The context with the laws whose sizes may change.
+SearchContext with_changing_laws(const SearchContext& context, const std::vector<Law>& laws) {
+  SearchContext result = with_laws(context, laws, names_of(context.problem.candidate_effects));
+  result.problem.trial_sizes = context.problem.trial_sizes;
+  return result;
+}
+
+/// Takes the laws back that are not in the model found.
+void drop_unused(const std::vector<Law>& laws, std::optional<ChangeSearch>& found) {
+  if (!found) return;
+  DiagnosisProblem& problem = found->context.problem;
+  const auto is_law = [&](const std::string& name) {
+    return std::any_of(laws.begin(), laws.end(),
+                       [&](const Law& law) { return law.effect.name == name; });
+  };
+  const auto is_used = [&](const std::string& name) {
+    return std::any_of(found->changes.begin(), found->changes.end(), [&](const auto& change) {
+      return change.parameter.starts_with(name + ".");
+    });
+  };
+  std::erase_if(problem.candidate_effects,
+                [&](const plant_sim::EffectInfo& effect) { return is_law(effect.name); });
+  const auto is_unused = [&](const auto& one) { return is_law(one.name) && !is_used(one.name); };
+  std::erase_if(problem.model.formula_effects, is_unused);
+  std::erase_if(problem.model.effects, is_unused);
+}
+
 /// Gain of the changes when they were taken, before lines were seen beside them.
 double gained_nats(const ChangeSearch& search) {
   double sum_nats = 0.0;
@@ -323,9 +351,11 @@ bool motion_explains_more(const InnovationStage& stage) {
   return false;
 }
 
-FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
-                            ChangesSought sought, const std::vector<ChangeProposal>& starts) {
-  if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
+namespace {
+
+/// The changes in a model that has the laws whose sizes may change.
+FoundChanges search_with_laws(const SearchContext& context, const ModelStage& base,
+                              ChangesSought sought, const std::vector<ChangeProposal>& starts) {
   ChangeSearch search{context, {}, {}};
   InnovationStage stage =
       settled(context, base, {}, Settling::fully, wide(context.options.threads));
@@ -343,6 +373,18 @@ FoundChanges search_changes(const SearchContext& context, const ModelStage& base
   if (found.likeliest && by_lines_nats < gained_nats(*found.likeliest)) return found;
   FoundChanges behind_lines = changes_from(std::move(search), starts, std::move(stage));
   return behind_lines.likeliest ? behind_lines : found;
+}
+
+}  // namespace
+
+FoundChanges search_changes(const SearchContext& context, const ModelStage& base,
+                            ChangesSought sought, const std::vector<ChangeProposal>& starts) {
+  if (context.problem.data.records.size() != 1 || context.cancelled()) return {};
+  const std::vector<Law> laws = changing_laws(context.problem.model, context.problem.data);
+  FoundChanges found = search_with_laws(with_changing_laws(context, laws), base, sought, starts);
+  drop_unused(laws, found.explaining);
+  drop_unused(laws, found.likeliest);
+  return found;
 }
 
 }  // namespace estimator::greybox::selection

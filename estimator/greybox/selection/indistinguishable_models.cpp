@@ -22,18 +22,17 @@ constexpr double kShareOfGain = 0.5;
 /// Share of the error up to which the difference of two residuals counts as the same motion.
 constexpr double kSameMotion = 0.3;
 
+/// The last round that tried the effect: the one with most of the other effects in place.
 const Round* round_of(const std::vector<Round>& rounds, const std::string& effect) {
-  for (const Round& round : rounds) {
+  const auto has_tried = [&](const Round& round) {
     const auto& before = round.before.added;
-    if (std::find(before.begin(), before.end(), effect) != before.end()) continue;
-    for (const Candidate& candidate : round.candidates) {
-      if (candidate.effects.size() == 1 && candidate.effects.front() == effect &&
-          candidate.fitted_at_all) {
-        return &round;
-      }
-    }
-  }
-  return nullptr;
+    return std::find(before.begin(), before.end(), effect) == before.end() &&
+           std::any_of(round.candidates.begin(), round.candidates.end(), [&](const auto& one) {
+             return one.fitted_at_all && one.effects == std::vector<std::string>{effect};
+           });
+  };
+  const auto last = std::find_if(rounds.rbegin(), rounds.rend(), has_tried);
+  return last == rounds.rend() ? nullptr : &*last;
 }
 
 /// The final model with `candidate` instead of `effect`.
@@ -98,7 +97,7 @@ std::vector<IndistinguishableModels> find_indistinguishable(const SearchContext&
       continue;
     }
     const double without_m =
-        final.added.size() == 1
+        final.added.size() == 1 && round->before.added.empty()
             ? round->before.fitted.validation_rms_m
             : refit(context,
                     subset(final.fitted, [&](const auto& p) { return !belongs_to(p, effect); }),

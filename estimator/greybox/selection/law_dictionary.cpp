@@ -17,6 +17,7 @@ using plant_sim::formula::FormulaEffect;
 /// Force of a law of typical size at the motion's RMS, as a share of the rig's greatest.
 constexpr double kTypicalForce = 0.03;
 constexpr double kTypicalRatio = 0.1;
+constexpr double kTypicalScale = 0.01;
 /// Largest size of a law over its typical one.
 constexpr double kMost = 1e3;
 constexpr double kMostRatio = 3.0;
@@ -39,6 +40,14 @@ class Dictionary {
  public:
   Dictionary(const plant_sim::ModelFile& model, const FitDataset& data)
       : model_(model), model_copy_(model), rig_(rig_scale(model, data)) {}
+
+  /// Empty where the plant has no site for it.
+  std::vector<Law> changing_laws() {
+    add("reading_scale", "position sensor whose scale is off", "sensor",
+        fmt::format("y_m + scale_ratio * (y_m - {})", place_m(rig_.centre_m)),
+        {size("scale_ratio", kTypicalScale, Sign::both)}, {"y"});
+    return std::move(laws_);
+  }
 
   std::vector<Law> laws(LawChoice choice) {
     add_forces();
@@ -334,6 +343,10 @@ class Dictionary {
 std::vector<Law> law_dictionary(const plant_sim::ModelFile& model, const FitDataset& data,
                                 LawChoice choice) {
   return Dictionary(model, data).laws(choice);
+}
+
+std::vector<Law> changing_laws(const plant_sim::ModelFile& model, const FitDataset& data) {
+  return Dictionary(model, data).changing_laws();
 }
 
 }  // namespace estimator::greybox::selection

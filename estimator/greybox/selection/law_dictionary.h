@@ -29,4 +29,9 @@ enum class LawChoice {
                                               const FitDataset& data,
                                               LawChoice choice = LawChoice::unexplained);
 
+/// Laws that a record shows where their sizes change within it alone: a constant scale of the
+/// position sensor is a gain.
+[[nodiscard]] std::vector<Law> changing_laws(const plant_sim::ModelFile& model,
+                                             const FitDataset& data);
+
 }  // namespace estimator::greybox::selection

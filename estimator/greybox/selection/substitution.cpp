@@ -36,13 +36,41 @@ bool is_small(const SearchContext& context, const FitSummary& fitted, const std:
   return false;
 }
 
+std::ptrdiff_t own_count(const FitSummary& fitted, const std::string& effect) {
+  return std::count_if(fitted.parameters.begin(), fitted.parameters.end(),
+                       [&](const FreeParameter& p) { return belongs_to(p, effect); });
+}
+
+/// True when another effect with fewer parameters came as near in the round in which this one was
+/// taken: refinements of the others, given up since, may have held it back.
+bool has_simpler_rival(const SearchBranch& branch, const std::string& effect) {
+  const Round* taken_in = nullptr;
+  for (const Round& round : branch.rounds) {
+    const auto& before = round.before.added;
+    if (std::find(before.begin(), before.end(), effect) == before.end()) taken_in = &round;
+  }
+  if (taken_in == nullptr) return false;
+  const FitSummary& found = branch.stage.fitted;
+  const auto& added = branch.stage.added;
+  return std::any_of(taken_in->candidates.begin(), taken_in->candidates.end(),
+                     [&](const Candidate& other) {
+                       const std::string& name = other.effects.front();
+                       return other.fitted_at_all && other.effects.size() == 1 &&
+                              std::find(added.begin(), added.end(), name) == added.end() &&
+                              other.validation_rms_m < (1.0 + kRivals) * found.validation_rms_m &&
+                              own_count(other.fitted, name) < own_count(found, effect);
+                     });
+}
+
 }  // namespace
 
 void substitute_idle_effects(const SearchContext& context, SearchBranch& branch) {
   if (branch.stage.added.size() < 2) return;
   const std::vector<std::string> added = branch.stage.added;
   for (const std::string& effect : added) {
-    if (!is_small(context, branch.stage.fitted, effect) || context.cancelled()) continue;
+    const bool competes =
+        is_small(context, branch.stage.fitted, effect) || has_simpler_rival(branch, effect);
+    if (!competes || context.cancelled()) continue;
     Round round = single_round(context, without(context, branch.stage, effect),
                                static_cast<int>(branch.rounds.size()) + 1);
     if (round.candidates.empty()) continue;

@@ -52,10 +52,34 @@ TEST(Words, OfAForceMayBeALoadCellsWhereAnotherSignalMayDrive) {
   EXPECT_EQ(read(with_columns("Force [N],Battery voltage [V]")).u_V[1], 2.0);
 }
 
+TEST(Words, OfSomethingElsesForceOrVoltageAreAskedAbout) {
+  for (const char* command :
+       {"Spring force [N]", "Federkraft [N]", "Friction force [N]", "Reaction torque [Nm]",
+        "Measured torque [Nm]", "Transducer voltage [V]", "Poti voltage [V]", "Id current [A]"}) {
+    EXPECT_THAT(error_of(with_columns(command)),
+                AllOf(HasSubstr(std::string("column ") + command +
+                                " may be the command, or a measurement beside it"),
+                      HasSubstr("probably: --map")))
+        << command;
+    EXPECT_EQ(read(with_columns(command), std::string("u=") + command).u_V[1], 2.0) << command;
+  }
+  EXPECT_THAT(error_of(with_columns("Position command [V]")),
+              HasSubstr("may be the command, or what a position loop is asked for"));
+  for (const char* command : {"Motor torque measured [Nm]", "Drehmoment [Nm]", "Ankerstrom [A]",
+                              "Torque [lbf in]", "Iq current [A]", "Coil currents [A]",
+                              "Position controller output [V]", "Valve current 1 [mA]"}) {
+    EXPECT_NE(read(with_columns(command)).u_V[1], 0.0) << command;
+  }
+  for (const char* other : {"Heater command [%]", "Fan voltage [V]", "Dither voltage [V]"}) {
+    EXPECT_THAT(error_of(with_columns(other)), HasSubstr("lacks a command column")) << other;
+  }
+}
+
 TEST(Words, OfWhatIsNoMeasurementAreNoPosition) {
   for (const char* position :
        {"Position std [mm]", "Theoretical position [mm]", "Generator position [mm]",
-        "Posición deseada [mm]", "Remaining stroke [mm]", "q_d [rad]", "x_t [mm]"}) {
+        "Posición deseada [mm]", "Remaining stroke [mm]", "q_d [rad]", "x_t [mm]", "pos_d [mm]",
+        "Joystick position [mm]", "Resolver angle electrical [deg]"}) {
     const std::string text =
         std::string("Time [s],Command [V],") + position + "\n0,1,2\n1,2,3\n2,1,2\n";
     EXPECT_THAT(error_of(text), AllOf(HasSubstr("lacks a position column"),

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "config/schema/error.h"
 #include "tests/workbench/run_command.h"
 
 namespace workbench::cli {
@@ -84,6 +85,18 @@ TEST_F(Rotary, CompareSaysAnglesAndTakesTheRecordAsTheyAre) {
   EXPECT_THAT(text, HasSubstr("turning backwards"));
   EXPECT_THAT(text, Not(HasSubstr("stands for")));
   expect_report_of_angles("compare.html");
+}
+
+TEST_F(Rotary, ALengthIsNoAngle) {
+  std::ofstream(file("mm.csv"))
+      << "Time [s],Command [V],Position [mm]\n0,1,2\n0.01,1,3\n0.02,1,4\n";
+  EXPECT_THAT(
+      [&] {
+        (void)workbench_test::run_command(add_compare, {model, file("mm.csv")});
+      },
+      testing::ThrowsMessage<config::schema::DataError>(
+          testing::AllOf(HasSubstr("mm.csv: has a position in mm, but the model's axis turns"),
+                         HasSubstr("--map 'y=Position [mm][rad]'"))));
 }
 
 TEST_F(Rotary, FitSaysAngles) {

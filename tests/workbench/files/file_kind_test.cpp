@@ -24,6 +24,9 @@ TEST(FileKind, IsSeenByTheFirstLineThatSaysSomething) {
   EXPECT_EQ(kind_of_text("# a stand\n\nplant = \"axis\"\n"), FileKind::toml);
   EXPECT_EQ(kind_of_text("\n[rig]\nid = 1\n"), FileKind::toml);
   EXPECT_EQ(kind_of_text("t_s,u_V,y_m\n0,1,0\n"), FileKind::record);
+  EXPECT_EQ(kind_of_text("Zeit [s];Weg [mm]\n0,0;1,5\n"), FileKind::record);
+  EXPECT_EQ(kind_of_text("Time\tPosition\n0\t1\n"), FileKind::record);
+  EXPECT_EQ(kind_of_text(std::string("\xFF\xFEt\0,\0", 6)), FileKind::record);
   EXPECT_EQ(kind_of_text(std::string(1 << 20, 'x')), FileKind::other);
   EXPECT_EQ(kind_of("/no/such/file"), FileKind::other);
   // Below comments of any length, a key at whatever place.

@@ -1,6 +1,7 @@
 // A session keeps names, files and its state, after refused changes too.
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "config/schema/error.h"
@@ -161,6 +162,17 @@ TEST(SessionFolder, DerivedNamesDoNotGrow) {
   EXPECT_EQ(derived_name("rig-diagnosed.toml", "+friction"), "rig+friction.toml");
   EXPECT_EQ(derived_name("rig-2.toml", "-fitted"), "rig-2-fitted.toml");
   EXPECT_EQ(derived_name("well-fitted-rig.toml", "-fitted"), "well-fitted-rig-fitted.toml");
+}
+
+TEST_F(StudyPage, AFileThatOnlyTheReaderKnowsMayBeARecord) {
+  page.put("catman.ASC", "CATMAN\r\nAnzahl Kan\xE4le: 3\r\n\r\nZeit\tWeg\r\n0\t1\r\n");
+  page.put("report.html", "<!doctype html>\n");
+  std::map<std::string, std::string> kinds;
+  for (const FolderFile& file : SessionFolder(page.session).files()) kinds[file.name] = file.kind;
+  EXPECT_EQ(kinds["catman.ASC"], "record");
+  EXPECT_EQ(kinds["report.html"], "other");
+  EXPECT_EQ(kinds["multisine.csv"], "record");
+  EXPECT_EQ(kinds["thesis.toml"], "model");
 }
 
 TEST_F(StudyPage, ANameTooLongIsCutBetweenCharacters) {

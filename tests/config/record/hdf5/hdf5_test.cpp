@@ -1,4 +1,5 @@
 // Records from HDF5: MATLAB's version 7.3 as matio writes it, and files as h5py users make them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -143,6 +144,29 @@ TEST_F(Hdf5, UnpacksScaledNumbers) {
   H5Dclose(position);
   H5Fclose(file);
   expect_the_motion(read());
+}
+
+TEST_F(Hdf5, RefusesConversionsOfOtherConventions) {
+  for (const char* name : {"gain", "Scale", "conversion", "SCALE_FACTOR", "Offset"}) {
+    for (const double value : {1.0, 0.0, 100.0}) {
+      const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+      write_vector(file, "t_s", t_s_);
+      write_vector(file, "u_V", u_V_);
+      write_vector(file, "y_mm", y_mm_);
+      const hid_t position = H5Dopen2(file, "y_mm", H5P_DEFAULT);
+      set_number(position, name, value);
+      H5Dclose(position);
+      H5Fclose(file);
+      if (value == (name == std::string("Offset") ? 0.0 : 1.0)) {
+        expect_the_motion(read());
+      } else {
+        EXPECT_THAT(
+            error(),
+            testing::AllOf(HasSubstr(fmt::format("y_mm has the attribute {} {:g}", name, value)),
+                           HasSubstr("--map")));
+      }
+    }
+  }
 }
 
 TEST_F(Hdf5, ReadsVectorsOfVersion73) {

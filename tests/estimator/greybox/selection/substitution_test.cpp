@@ -79,5 +79,21 @@ TEST(Substitution, SlavesWithAMassStay) {
   EXPECT_TRUE(branch.rounds.empty());
 }
 
+TEST(Substitution, OneParameterOfAirTakesThePlaceOfAResonanceWithFour) {
+  // taken while the dead band still had a refinement that it did not need
+  const SearchContext context = context_of(
+      "motion=fast_steps,mismatched=1,deadband.half_width_V=0.3055743711,"
+      "entrained_air.fraction_ratio=0.1156361578,plant.mass_kg=51.46571907,"
+      "plant.damping_N_s_per_m=1041.60673,plant.bulk_modulus_Pa=708892221.3,"
+      "plant.dead_volume_m3=8.140621915e-06,plant.supply_pressure_Pa=7038077.686,"
+      "plant.valve_gain_m_per_V=2.792100195e-05,"
+      "plant.valve_natural_frequency_rad_per_s=684.6017257,"
+      "plant.valve_damping_ratio=0.6420169518",
+      67706050002);
+  SearchStart start = start_search(context);
+  extend_search(context, start);
+  EXPECT_THAT(start.branch.stage.added, UnorderedElementsAre("deadband", "entrained_air"));
+}
+
 }  // namespace
 }  // namespace estimator::greybox::selection
