@@ -125,6 +125,11 @@ class Scoring(unittest.TestCase):
         self.expect("yes", False, "leftout", drift, answer("changing", changing=gain))
         damping = [{"parameter": "damping_N_s_per_m"}]
         self.expect("no", False, "leftout", drift, answer("changing", changing=damping))
+        scale = record(left_out={**LAW, "name": "scale_drift", "classes": ["measurement"],
+                                 "variables": ["time"]})
+        reading = [{"parameter": "reading_scale.scale_ratio"}]
+        self.expect("yes", False, "leftout", scale, answer("changing", changing=reading))
+        self.expect("no", False, "leftout", scale, answer("changing", changing=gain))
         of_speed = record(left_out={**LAW, "classes": ["gain"], "variables": ["v"]})
         self.expect("no", False, "leftout", of_speed, answer("changing", changing=gain))
 

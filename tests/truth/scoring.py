@@ -120,7 +120,8 @@ def score_law(record, verdict, answer, named):
 # Where in `where` the effect of a law's site, or of a changed parameter, appears.
 CLASSES_OF_SITE = {"force": {"force"}, "dry_friction": {"force"}, "sensor": {"measurement"},
                    "command": {"command", "flow", "gain"}, "spool": {"command", "flow", "gain"}}
-CLASSES_OF_PARAMETER = {"mass": {"force"}, "damping": {"force"}, "force": {"force"},
+CLASSES_OF_PARAMETER = {"reading_scale": {"measurement"}, "mass": {"force"},
+                        "damping": {"force"}, "force": {"force"},
                         "friction": {"force"}, "stiffness": {"force"}}
 VALVE = {"flow", "gain"}
 

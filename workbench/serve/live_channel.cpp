@@ -23,6 +23,7 @@ constexpr std::chrono::seconds kStatus{1};
 constexpr std::chrono::seconds kFigures{5};  ///< a comparison over the last half minute
 constexpr std::chrono::seconds kRetry{1};
 /// A page that loads itself again finds the last minute, and a trigger as it was.
+constexpr std::size_t kKeptCaptures = 4;
 constexpr std::chrono::seconds kLinger{15};
 /// Most numbers in a batch: some 200 kB of text.
 constexpr std::uint64_t kMostNumbers = 20'000;
@@ -132,16 +133,20 @@ void LiveChannel::set_trigger(const TriggerSettings& settings) {
   ++wish_.triggers_set;
 }
 
-std::shared_ptr<const Capture> LiveChannel::newest_capture() const {
+std::shared_ptr<const Capture> LiveChannel::capture(std::uint64_t number) const {
   const std::lock_guard lock(mutex_);
-  return capture_;
+  for (auto one = kept_.rbegin(); one != kept_.rend(); ++one) {
+    if (number == 0 || (*one)->number == number) return *one;
+  }
+  return nullptr;
 }
 
 std::shared_ptr<const Capture> LiveChannel::number(const std::shared_ptr<const Capture>& capture) {
   auto numbered = std::make_shared<Capture>(*capture);
   const std::lock_guard lock(mutex_);
   numbered->number = ++captures_;
-  capture_ = numbered;
+  kept_.push_back(numbered);
+  if (kept_.size() > kKeptCaptures) kept_.pop_front();
   return numbered;
 }
 
@@ -203,7 +208,7 @@ void LiveChannel::listen() {
     const std::vector<StreamId> begin = pages.set(now.pages);
     if (!begin.empty()) told = {};
     for (const Batch& batch : pages.next(listener)) publish_(batch.pages, batch.name, batch.json);
-    show_capture(newest_capture(), begin);
+    show_capture(capture(), begin);
     if (const auto made = listener.take_capture()) {
       show_capture(number(made), {now.pages.begin(), now.pages.end()});
       told = {};

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -48,8 +50,9 @@ class LiveChannel {
   /// May be called from any thread. While a page watches, the samples about each crossing are
   /// captured at the full rate; the pages get the event "capture".
   void set_trigger(const TriggerSettings& settings);
-  /// May be called from any thread; null: none yet.
-  [[nodiscard]] std::shared_ptr<const Capture> newest_capture() const;
+  /// May be called from any thread. The capture of that number, 0: the newest; null: none such, or
+  /// no longer kept.
+  [[nodiscard]] std::shared_ptr<const Capture> capture(std::uint64_t number = 0) const;
 
  private:
   struct Wish {
@@ -73,7 +76,7 @@ class LiveChannel {
   mutable std::mutex mutex_;
   std::condition_variable wakes_;
   Wish wish_;
-  std::shared_ptr<const Capture> capture_;
+  std::deque<std::shared_ptr<const Capture>> kept_;  ///< the newest is the last
   std::uint64_t captures_ = 0;
   std::thread thread_;
 };

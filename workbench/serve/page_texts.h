@@ -20,6 +20,8 @@ namespace workbench::serve {
 [[nodiscard]] std::string_view page_result();
 [[nodiscard]] std::string_view page_live();
 [[nodiscard]] std::string_view page_ring();
+[[nodiscard]] std::string_view page_read_as();
+[[nodiscard]] std::string_view page_touch();
 [[nodiscard]] std::string_view page_trigger();
 [[nodiscard]] std::string_view page_alarms();
 // Of the npm registry; empty where the build had none.

@@ -47,8 +47,16 @@ std::optional<std::string> decoded(std::string_view text) {
 std::string upload_name(const HttpHead& head) {
   constexpr std::string_view kName = "name=";
   if (!std::string_view(head.query).starts_with(kName)) return {};
-  const auto name = decoded(std::string_view(head.query).substr(kName.size()));
+  const std::string_view query = std::string_view(head.query).substr(kName.size());
+  const auto name = decoded(query.substr(0, query.find('&')));
   return name && is_plain_name(*name) ? *name : std::string();
+}
+
+std::string upload_map(const HttpHead& head) {
+  constexpr std::string_view kMap = "&map=";
+  const std::size_t at = head.query.find(kMap);
+  if (at == std::string::npos) return {};
+  return decoded(std::string_view(head.query).substr(at + kMap.size())).value_or("");
 }
 
 std::string text_in(const Json& body, const char* key) {

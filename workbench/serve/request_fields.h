@@ -18,6 +18,8 @@ namespace workbench::serve {
 [[nodiscard]] std::optional<std::string> decoded(std::string_view text);
 /// The file name of /api/upload?name=...; empty where it is none.
 [[nodiscard]] std::string upload_name(const HttpHead& head);
+/// The mapping of an upload's columns, of its query; empty: none.
+[[nodiscard]] std::string upload_map(const HttpHead& head);
 [[nodiscard]] std::string text_in(const nlohmann::ordered_json& body, const char* key);
 /// Empty where the key is absent.
 [[nodiscard]] std::vector<std::string> texts_in(const nlohmann::ordered_json& body,

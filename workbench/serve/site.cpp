@@ -197,7 +197,7 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   }
   if (path == "/api/capture") {
     return on_study(
-        reply, [this] { return save_capture(); }, true);
+        reply, [=, this] { return save_capture(*body); }, true);
   }
   if (path == "/api/cancel") {
     jobs_.cancel();
@@ -226,6 +226,10 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   }
   if (path == "/api/record")
     return change([=, this] { study_.open_record(text_in(*body, "name")); });
+  if (path == "/api/import") {
+    return change(
+        [=, this] { (void)study_.import_record(text_in(*body, "name"), text_in(*body, "map")); });
+  }
   if (path == "/api/model") return change([=, this] { study_.open_model(text_in(*body, "name")); });
   if (path == "/api/shipped") {
     return change([=, this] { study_.open_shipped(text_in(*body, "name")); });
@@ -262,7 +266,7 @@ void Site::take_upload(const HttpRequest& request, const HttpReply& reply) {
   const std::string name = upload_name(request.head);
   on_study(
       reply,
-      [this, upload = request.upload, name]() mutable {
+      [this, upload = request.upload, name, map = upload_map(request.head)]() mutable {
         // Without a name by the end of this block the file is removed, before the answer.
         const auto file = std::move(upload);
         const std::string kept = folder_.keep_upload(file->path(), name);
@@ -271,8 +275,10 @@ void Site::take_upload(const HttpRequest& request, const HttpReply& reply) {
           const bool is_model = std::filesystem::path(kept).extension() == ".toml";
           if (is_model) {
             study_.open_model(kept);
-          } else {
+          } else if (map.empty()) {
             study_.open_record(kept);
+          } else {
+            return Json{{"name", study_.import_record(kept, map)}};
           }
         } catch (const std::exception&) {
           std::error_code ignored;
@@ -317,9 +323,15 @@ void Site::on_study(const HttpReply& reply, std::function<Json()> work, bool cha
   });
 }
 
-Site::Json Site::save_capture() {
-  const std::shared_ptr<const Capture> capture = live_.newest_capture();
-  if (!capture) throw UsageError("nothing has been captured yet");
+Site::Json Site::save_capture(const Json& body) {
+  const auto found = body.find("number");
+  const std::uint64_t number =
+      found != body.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+  const std::shared_ptr<const Capture> capture = live_.capture(number);
+  if (!capture) {
+    throw UsageError(number == 0 ? "nothing has been captured yet"
+                                 : "capture " + std::to_string(number) + " is no longer kept");
+  }
   const std::string file = folder_.fresh_name("capture.csv");
   config::record::write_csv(record_of(*capture), folder_.path_of(file));
   return {{"name", file}};

@@ -66,8 +66,8 @@ class Site final : public HttpHandler {
   /// Runs `work` on the study's thread and answers with what it returns, errors included; `changes`
   /// tells all pages.
   void on_study(const HttpReply& reply, std::function<Json()> work, bool changes);
-  /// Writes the newest capture as a record; its file name.
-  Json save_capture();
+  /// Writes the capture of that `number`, or the newest, as a record; its file name.
+  Json save_capture(const Json& body);
   Json begin_fit(const Json& body);
   Json begin_diagnosis(const Json& body);
   /// At most ten events a second.

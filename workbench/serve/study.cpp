@@ -20,6 +20,7 @@
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
 #include "workbench/serve/slider_unit.h"
+#include "workbench/serve/study_commands.h"
 
 namespace workbench::serve {
 namespace {
@@ -29,19 +30,6 @@ using config::schema::UsageError;
 constexpr std::size_t kMostIgnored = 100;
 /// Split of the record that a fit scores itself on.
 constexpr const char* kSplit = "blocks";
-
-std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
-
-std::string command_of(const std::vector<std::string>& words) {
-  return present::shell_command(words);
-}
-
-void add_ignored(std::vector<std::string>& words, const std::vector<std::string>& spans) {
-  for (const std::string& span : spans) {
-    words.emplace_back("--ignore");
-    words.push_back(span);
-  }
-}
 
 /// Error on the samples that `--fit blocks` leaves out.
 double heldout_of(const validation::Comparison& comparison) {
@@ -58,23 +46,6 @@ std::string allowed_range(const greybox::CatalogueParameter& parameter, double v
   return config::units::typeset(fmt::format("{:.6g} to {:.6g} {}", parameter.info.min / scale.in_si,
                                             parameter.info.max / scale.in_si, scale.unit));
 }
-
-/// A file made on the way to a change: removed where the change fails.
-class MadeFile {
- public:
-  explicit MadeFile(std::string path) : path_(std::move(path)) {}
-  ~MadeFile() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove(path_, ignored);
-  }
-  MadeFile(const MadeFile&) = delete;
-  MadeFile& operator=(const MadeFile&) = delete;
-
-  void keep() { path_.clear(); }
-
- private:
-  std::string path_;
-};
 
 }  // namespace
 
@@ -173,51 +144,19 @@ const std::string& Study::shown_model() const {
   return open_.trial.empty() ? open_.model : open_.trial;
 }
 
-void Study::open_record(const std::string& record) {
+void Study::open_record(const std::string& record, const std::string& command) {
   // Read even where no model is open, so that a mistake is told at once.
   (void)greybox::dataset_of(config::record::read_record(folder_.existing(record)));
   Open next = open_;
   next.record = record;
   next.ignored.clear();
+  if (!command.empty()) next.lineage.remember(command);
   show(std::move(next));
 }
 
 void Study::open_model(const std::string& model) {
   (void)folder_.existing(model);
   show_model(model);
-}
-
-void Study::open_shipped(const std::string& name) {
-  for (const ShippedModel& shipped : shipped_models()) {
-    if (shipped.name != name) continue;
-    const std::string file = folder_.fresh_name(name);
-    config::record::write_whole(folder_.path_of(file), shipped.text);
-    MadeFile made(folder_.path_of(file));
-    open_model(file);
-    return made.keep();
-  }
-  throw UsageError("no model of that name comes with the program");
-}
-
-void Study::make_model(const std::string& kind_name, const model::Answers& answers) {
-  const model::Kind& kind = model::find_kind(kind_name);
-  model::check_answers(kind, answers);
-  const std::string file = folder_.fresh_name(kind.name + ".toml");
-  std::vector<std::string> words{"spoolwatch", "new", kind.name, "-o", file};
-  for (const auto& [flag, value] : answers) {
-    words.insert(words.end(), {"--" + flag, add::number_text(value)});
-  }
-  const std::string command = command_of(words);
-  config::record::write_whole(folder_.path_of(file),
-                              model::model_text(kind, answers, stem(file), command));
-  MadeFile made(folder_.path_of(file));
-  Open next = open_;
-  next.model = file;
-  next.trial.clear();
-  next.lineage.add(file, "", "from data sheets");
-  next.lineage.remember(command);
-  show(std::move(next));
-  made.keep();
 }
 
 void Study::ignore(const std::vector<std::string>& spans) {
@@ -229,26 +168,6 @@ void Study::ignore(const std::vector<std::string>& spans) {
   Open next = open_;
   next.ignored = spans;
   show(std::move(next));
-}
-
-void Study::add_effect(const std::string& effect) {
-  if (open_.model.empty()) throw UsageError("no model is open");
-  const std::string from = folder_.existing(open_.model);
-  std::vector<std::string> values;
-  const add::AddedEffect neutral = add::add_effect(from, effect, {});
-  for (const plant_sim::ParameterInfo& info : neutral.effect.parameters) {
-    if (info.refinement > 0) continue;
-    values.push_back(std::string(info.name) + "=" + add::number_text(info.typical));
-  }
-  const plant_sim::ModelFile with = add::add_effect(from, effect, values).model;
-  const std::string file = folder_.fresh_name(derived_name(open_.model, "+" + effect));
-  std::vector<std::string> words{"spoolwatch", "add", open_.model, effect};
-  words.insert(words.end(), values.begin(), values.end());
-  words.insert(words.end(), {"-o", file});
-  config::record::write_whole(folder_.path_of(file), plant_sim::print_model(with));
-  MadeFile made(folder_.path_of(file));
-  take_trial(file, open_.model, "+ " + effect + ", of typical size", command_of(words));
-  made.keep();
 }
 
 void Study::take_trial(const std::string& model, const std::string& parent, const std::string& what,
@@ -291,23 +210,6 @@ const Study::Shown& Study::front() const {
   const std::optional<Shown>& shown = tried_ ? tried_ : accepted_;
   if (!shown) throw UsageError("open a record and a model first");
   return *shown;
-}
-
-std::string Study::write_report() {
-  const present::PrintedAxis axis(motion());
-  std::string file = folder_.fresh_name(stem(shown_model()) + ".html");
-  std::vector<std::string> words{"spoolwatch", "compare", shown_model(), open_.record};
-  add_ignored(words, open_.ignored);
-  words.insert(words.end(), {"--report", file});
-  const std::string command = command_of(words);
-  Open next = open_;
-  next.lineage.remember(command);
-  MadeFile made(folder_.path_of(file));
-  present::write_report(compare::make_report(front().comparison, command), folder_.path_of(file));
-  save_session(folder_, next);
-  open_ = std::move(next);
-  made.keep();
-  return file;
 }
 
 std::vector<std::string> Study::assignments_of(const ParameterValues& values) const {

@@ -45,7 +45,11 @@ class Study {
   // Each throws config::schema::Error, or another std::exception for want of memory; the session
   // and what is open are then as before, and files that it made are removed.
 
-  void open_record(const std::string& record);
+  /// `command`: the line that made the file; empty: none did.
+  void open_record(const std::string& record, const std::string& command = "");
+  /// Makes the record that a file is with the mapping `map`, as `spoolwatch import` does, and opens
+  /// it; its name.
+  std::string import_record(const std::string& record, const std::string& map);
   void open_model(const std::string& model);
   /// Copies a shipped model into the folder and opens it.
   void open_shipped(const std::string& name);

@@ -174,6 +174,17 @@ class Page:
             mouse("mouseMoved", x0 + (x1 - x0) * i / 5, y0 + (y1 - y0) * i / 5)
         mouse("mouseReleased", x1, y1, clickCount=1)
 
+    def touch(self, begin, end):
+        """Fingers that go down at the places `begin`, move to those of `end` in steps, and go up."""
+        def fingers(kind, places):
+            self.call("Input.dispatchTouchEvent", type=kind,
+                      touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)])
+        fingers("touchStart", begin)
+        for k in range(1, 9):
+            fingers("touchMove", [(x0 + (x1 - x0) * k / 8, y0 + (y1 - y0) * k / 8)
+                                  for (x0, y0), (x1, y1) in zip(begin, end)])
+        fingers("touchEnd", [])
+
     def picture(self, file, whole=False):
         data = self.call("Page.captureScreenshot", captureBeyondViewport=whole)["data"]
         with open(file, "wb") as out:

@@ -208,7 +208,8 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   write_log(log);
   Inboxes inboxes;
   LiveChannel channel = channel_of(log, inboxes);
-  EXPECT_EQ(channel.newest_capture(), nullptr);
+  EXPECT_EQ(channel.capture(), nullptr);
+  EXPECT_EQ(channel.capture(1), nullptr);
   TriggerSettings settings;
   settings.mode = TriggerSettings::Mode::single;
   settings.level = 303.00005;  // mm, between the samples of 30.000 and 30.001 s
@@ -225,10 +226,12 @@ TEST(LiveChannel, ATriggerCapturesTheFullRateAsARecord) {
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   channel.open(3);
   (void)inboxes.when_it_has(3, 59 * kRate_Hz);
-  const auto capture = channel.newest_capture();
+  const auto capture = channel.capture();
   ASSERT_NE(capture, nullptr);
   EXPECT_EQ(inboxes.captures, 3) << "shown to each page";
   EXPECT_EQ(capture->number, 1U);
+  EXPECT_EQ(channel.capture(1), capture);
+  EXPECT_EQ(channel.capture(2), nullptr) << "another than the page shows is not saved in its place";
   EXPECT_NEAR(capture->span.at_s - kBegin_s, 30.0005, 1e-5);
   const ordered_json drawn = ordered_json::parse(to_json(*capture));
   EXPECT_NEAR(drawn["from"].get<double>(), -1.0, 1e-9);
@@ -337,7 +340,7 @@ TEST(LiveChannel, PressuresAndRodsAreChannelsThatCanTrigger) {
   EXPECT_EQ(batch["supply"].size(), batch["t"].size());
   EXPECT_FALSE(batch.contains("in"));
 
-  const auto capture = channel.newest_capture();
+  const auto capture = channel.capture();
   ASSERT_NE(capture, nullptr);
   EXPECT_NEAR(capture->span.at_s - kBegin_s, 30.0005, 1e-5);
   const std::string file = (folder / "capture.csv").string();

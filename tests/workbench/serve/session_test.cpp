@@ -1,9 +1,12 @@
 // A session keeps names, files and its state, after refused changes too.
+#include <fmt/format.h>
+
 #include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
 
+#include "config/record/record.h"
 #include "config/schema/error.h"
 #include "config/schema/read_file.h"
 #include "tests/file_size_limit.h"
@@ -173,6 +176,33 @@ TEST_F(StudyPage, AFileThatOnlyTheReaderKnowsMayBeARecord) {
   EXPECT_EQ(kinds["report.html"], "other");
   EXPECT_EQ(kinds["multisine.csv"], "record");
   EXPECT_EQ(kinds["thesis.toml"], "model");
+}
+
+TEST_F(StudyPage, ARecordIsImportedByAMappingAndByNoFile) {
+  std::string text = "a;b;c\n";
+  for (int k = 0; k < 300; ++k) text += fmt::format("{};{};{}\n", 0.01 * k, k % 3, 300 + k);
+  page.put("bench.txt", text);
+  const std::string files = page.everything();
+  for (const std::string& map : {(page.session / "thesis.toml").string(), std::string("=x"),
+                                 std::string("t=a[s],u=b[V],y=d[mm]")}) {
+    EXPECT_EQ(page.post("import", {{"name", "bench.txt"}, {"map", map}}).status, 422) << map;
+  }
+  EXPECT_EQ(page.everything(), files);
+  page.put("session.json", "");
+  const SessionFolder folder(page.session);
+  Study study(folder);
+  EXPECT_EQ(study.import_record("bench.txt", "t=a[s],u=b[V],y=c[mm]"), "bench-imported.csv");
+  const ordered_json state = study.state();
+  EXPECT_EQ(state["record"], "bench-imported.csv");
+  EXPECT_EQ(state["commands"].back(),
+            "spoolwatch import bench.txt --map 't=a[s],u=b[V],y=c[mm]' -o bench-imported.csv");
+  EXPECT_EQ(config::record::read_record(page.session / "bench-imported.csv").y_m[1], 0.301);
+}
+
+TEST_F(StudyPage, AShippedModelLeavesALineInTheScript) {
+  ASSERT_EQ(page.post("shipped", {{"name", "velocity_servo.toml"}}).status, 200);
+  EXPECT_EQ(page.state()["commands"].back(),
+            "# velocity_servo.toml: the model velocity_servo.toml as it comes with spoolwatch");
 }
 
 TEST_F(StudyPage, ANameTooLongIsCutBetweenCharacters) {

@@ -7,6 +7,7 @@ import json
 import shutil
 import subprocess
 import sys
+import time
 
 sys.dont_write_bytecode = True
 import browser_test  # noqa: E402
@@ -116,6 +117,41 @@ def story(args, folder):
         page.key(".stack", "0")
         page.wait("([...document.querySelectorAll('button')].find((b) => b.textContent === 'Whole record').disabled)")
 
+        # By finger, as on a tablet: two apart bring it nearer, one moves it; by buttons farther and back.
+        def shown():
+            return [float(v) for v in page.run("document.querySelector('.stack').dataset.shown").split(":")]
+
+        def turned(by):
+            before = shown()
+            by()
+            page.wait(f"document.querySelector('.stack').dataset.shown !== '{before[0]}:{before[1]}'")
+            after = []
+            while after != shown():  # until it stands still
+                after = shown()
+                time.sleep(0.5)
+            return before, after
+
+        def finger(share):
+            return box[0] + share * box[2], middle
+
+        page.wait("document.querySelector('.stack').dataset.shown.startsWith('0:')")
+        before, after = turned(lambda: page.touch([finger(0.4), finger(0.6)], [finger(0.3), finger(0.7)]))
+        span = (before[1] - before[0]) / 2
+        expect(f"{after} is the middle half of {before}", abs(after[1] - after[0] - span) < 0.05 * span
+               and abs(sum(after) - sum(before)) < 0.1 * span)
+        before, after = turned(lambda: page.touch([finger(0.5)], [finger(0.3)]))
+        expect(f"{after} is a fifth later than {before}", abs(after[0] - before[0] - 0.2 * span) < 0.02 * span
+               and abs(after[1] - before[1] - 0.2 * span) < 0.02 * span)
+        before, after = turned(lambda: page.click("button[aria-label='earlier']"))
+        expect(f"{after} is a quarter earlier than {before}", abs(before[0] - after[0] - span / 4) < 0.02 * span)
+        page.click_text("Leave out a stretch")
+        page.touch([finger(0.2)], [finger(0.4)])
+        page.wait("document.querySelector('.bands button')")
+        page.click(".bands button")
+        page.wait("!document.querySelector('.bands button')")
+        page.click("button[aria-label='zoom out']")
+        page.wait("([...document.querySelectorAll('button')].find((b) => b.textContent === 'Whole record').disabled)")
+
         # What is missing: progress, the trial, the fallen error, acceptance.
         page.click_text("Diagnose")
         page.wait("document.querySelector('.progress') || document.querySelector('.result')")
@@ -201,6 +237,30 @@ def story(args, folder):
         page.drop_files("#upload", [folder / "bad.csv"])
         page.wait("document.querySelector('[role=alert]')")
         expect("no element came from a name", page.run("document.querySelectorAll('#app img, #app script').length") == 0)
+        expect("no mapping helps a damaged row", page.run("document.querySelector('#map')") is None)
+
+        # A record whose columns are not understood is read as the engineer says: proposed, wrong, right.
+        rows = (tour / "steps.csv").read_text().splitlines()[1:]
+        (folder / "bench.txt").write_text("\n".join(["time;voltage;pos"] + [row.replace(",", ";") for row in rows]))
+        page.drop_files("#upload", [folder / "bench.txt"])
+        page.wait("document.querySelector('#map')")
+        proposed = page.run("document.querySelector('#map').value")
+        expect(f"{proposed} is the mapping", proposed == "t=time[s],u=voltage[V],y=pos[m]")
+        picture(page, "read-as")
+        page.type("#map", "t=time[s],u=voltage[V],y=position[m]")
+        page.click_text("Read it so")
+        page.wait("document.querySelector('[role=alert]')?.innerText.includes('there is no column position')")
+        page.type("#map", "t=time[s],u=voltage[V],y=pos[m]")
+        page.click_text("Read it so")
+        page.wait("document.querySelector('#record').value === 'bench-imported.csv'")
+        expect("the question is gone", page.run("document.querySelector('#map')") is None)
+        def numbers(file):
+            lines = [line for line in file.read_text().splitlines() if line[:1].isdigit()]
+            return [[float(field) for field in line.split(",")[:3]] for line in lines]
+
+        expect("the record is the same", numbers(folder / "session" / "bench-imported.csv") == numbers(tour / "steps.csv"))
+        page.wait("document.querySelector('.commands').innerText.includes("
+                  "\"spoolwatch import bench.txt --map 't=time[s],u=voltage[V],y=pos[m]' -o bench-imported.csv\")")
 
         # A model from the numbers of data sheets; what is missing is named.
         page.run("document.querySelector('details.make').open = false")

@@ -2,7 +2,7 @@
 // paused, and it says since when nothing has come.
 import {html, useEffect, useRef, useState} from './preact.js';
 import {AlarmCount, Alarms, standing} from './alarms.js';
-import {PlotStack} from './plots.js';
+import {PlotStack, ZoomButtons} from './plots.js';
 import {Ring} from './ring.js';
 import {post} from './server.js';
 import {TriggerTools} from './trigger.js';
@@ -180,6 +180,7 @@ export function Live({feed, link, state, openWorkbench}) {
     const stack = new PlotStack(element.current, specs, {onZoom: (from, to) => {
       setView(from === null ? null : [k.base + from, k.base + to]);
     }});
+    k.turn = (key) => stack.turn(key);
     const on = {
       history: ({detail}) => {
         if (!k.ring.history(detail)) k.frozen = null;
@@ -303,6 +304,7 @@ export function Live({feed, link, state, openWorkbench}) {
             onChange=${(e) => { setView(null); setSpan(+e.target.value); }}>
             ${[5, 10, 30, 60, 120].map((s) => html`<option value=${s}>${s} s</option>`)}</select></label>
           <${Channels} channels=${channels} chosen=${chosen} choose=${choose} />
+          <${ZoomButtons} turn=${(key) => kept.current.turn(key)} disabled=${age.s === null} />
           ${view && html`<button onClick=${() => setView(null)}>
             ${captured && capture ? 'Whole capture' : 'Back to live'}</button>`}
         </p>

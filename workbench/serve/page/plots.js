@@ -1,5 +1,7 @@
 // Time plots that share zoom and cursor, drawn by uPlot in the colours of the style sheet.
 import {trace} from './curves.js';
+import {html} from './preact.js';
+import {byFinger} from './touch.js';
 import uPlot from './uplot.js';
 
 export const colour = (name) =>
@@ -76,9 +78,17 @@ function mark(stack, spec) {
   };
 }
 
+/// Buttons for what the keys do, where there is neither keyboard nor wheel.
+export function ZoomButtons({turn, disabled}) {
+  return html`<span class="zoom">${[['−', '-', 'zoom out'], ['+', '+', 'zoom in'], ['‹', 'ArrowLeft', 'earlier'],
+    ['›', 'ArrowRight', 'later']].map(([sign, key, label]) => html`
+      <button aria-label=${label} title=${label} disabled=${disabled} onClick=${() => turn(key)}>${sign}</button>`)}</span>`;
+}
+
 /// Plots below each other. specs: [{height, label, level, series: [{key, name, tone, dash, width}]}].
 export class PlotStack {
   constructor(element, specs, {onZoom, onBand, xLabel = 'time, s'} = {}) {
+    this.element = element;
     this.specs = specs;
     this.bands = [];
     this.levels = {};
@@ -137,22 +147,31 @@ export class PlotStack {
     };
     this.theme.addEventListener('change', this.repaint);
     this.range = null;  // shown, in s
+    this.onZoom = onZoom;
     if (onZoom) {
-      for (const plot of this.plots) plot.over.addEventListener('dblclick', () => onZoom(null, null));
+      for (const plot of this.plots) {
+        plot.over.addEventListener('dblclick', () => onZoom(null, null));
+        byFinger(plot, {range: () => this.range, zoom: onZoom,
+                        marks: () => this.dragMeaning === 'band', mark: onBand});
+      }
       element.tabIndex = 0;
       element.setAttribute('role', 'group');
       element.setAttribute('aria-label', 'plots over time: arrows move, plus and minus zoom, 0 shows all');
       element.addEventListener('keydown', (e) => {
-        if (!this.range || e.ctrlKey || e.metaKey || e.altKey) return;
-        const [from, to] = this.range, part = (to - from) / 4;
-        const next = {ArrowLeft: [from - part, to - part], ArrowRight: [from + part, to + part],
-                      '+': [from + part, to - part], '-': [from - 2 * part, to + 2 * part],
-                      0: [null, null]}[e.key === '=' ? '+' : e.key];
-        if (!next) return;
-        e.preventDefault();
-        onZoom(...next);
+        if (!e.ctrlKey && !e.metaKey && !e.altKey && this.turn(e.key === '=' ? '+' : e.key)) e.preventDefault();
       });
     }
+  }
+
+  /// Moves what is shown as a key does; false: by no such key.
+  turn(key) {
+    if (!this.range) return false;
+    const [from, to] = this.range, part = (to - from) / 4;
+    const next = {ArrowLeft: [from - part, to - part], ArrowRight: [from + part, to + part],
+                  '+': [from + part, to - part], '-': [from - 2 * part, to + 2 * part],
+                  0: [null, null]}[key];
+    if (next) this.onZoom(...next);
+    return Boolean(next);
   }
 
   /// columns: {t, KEY: [...]}; a missing key is an empty curve. `count`: the first so many plots.
@@ -160,6 +179,7 @@ export class PlotStack {
     const empty = columns.t.map(() => null);
     this.shown = true;
     this.range = [from, to];
+    this.element.dataset.shown = from + ':' + to;
     this.plots.slice(0, count).forEach((plot, i) => {
       const data = [columns.t, ...this.specs[i].series.map((s) => columns[s.key] || empty)];
       plot.batch(() => {

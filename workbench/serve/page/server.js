@@ -37,8 +37,10 @@ export async function post(path, body = {}) {
     body: JSON.stringify(body)}));
 }
 
-export async function upload(file) {
-  return answer(await ask('/api/upload?name=' + encodeURIComponent(file.name), {
+/// Throws where the record is refused. map: which columns are time, command and position; '': as understood.
+export async function upload(file, map = '') {
+  const query = '?name=' + encodeURIComponent(file.name) + (map && '&map=' + encodeURIComponent(map));
+  return answer(await ask('/api/upload' + query, {
     method: 'POST',
     headers: {'Content-Type': 'application/octet-stream', 'X-Spoolwatch-Change': change},
     body: file}));

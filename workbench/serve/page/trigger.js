@@ -43,7 +43,7 @@ export function TriggerTools({status, channels, meters, capture, onShow, onSaved
     sent.current = {text: JSON.stringify(of(next)), at: Date.now()};
     attempt(() => post('trigger', next));
   };
-  const save = () => attempt(async () => onSaved((await post('capture')).name));
+  const save = () => attempt(async () => onSaved((await post('capture', {number: capture.number})).name));
   const pick = (key, label, options) => html`
     <label class="row">${label} <select id=${'trigger-' + key} value=${String(settings[key])}
       onChange=${(e) => set({[key]: typeof FIRST[key] === 'number' ? +e.target.value : e.target.value})}>

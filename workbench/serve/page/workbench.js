@@ -3,7 +3,8 @@ import {html, useEffect, useRef, useState} from './preact.js';
 import {Ladder} from './ladder.js';
 import {Laws} from './laws.js';
 import {MakeModel} from './make.js';
-import {PlotStack} from './plots.js';
+import {PlotStack, ZoomButtons} from './plots.js';
+import {ReadAs, proposal} from './read_as.js';
 import {Result} from './result.js';
 import {latest, post, upload} from './server.js';
 import {Sliders} from './sliders.js';
@@ -19,11 +20,22 @@ const SPECS = [
   {height: 140, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
 ];
 
-function Files({state, act}) {
+function Files({state, act, ask}) {
   const [over, setOver] = useState(false);
   const input = useRef();
+  /// Reads a record; where its columns are not understood, asks which they are. read(map): map is '' at first.
+  const attempt = (name, read) => act(async () => {
+    ask(null);
+    try {
+      await read('');
+    } catch (error) {
+      const map = proposal(error.message);
+      if (map) ask({name, map, read});
+      throw error;
+    }
+  });
   const take = async (files) => {
-    for (const file of files) await act(() => upload(file));
+    for (const file of files) await attempt(file.name, (map) => upload(file, map));
   };
   // Anywhere on the page.
   useEffect(() => {
@@ -36,12 +48,14 @@ function Files({state, act}) {
   }, []);
   const records = state.files.filter((f) => f.kind === 'record');
   const models = state.files.filter((f) => f.kind === 'model');
+  const open = (name) =>
+    attempt(name, (map) => (map ? post('import', {name, map}) : post('record', {name})));
   const choose = (what, name) => act(() => post(what, {name}));
   return html`
     <section class=${'files' + (over ? ' over' : '')}>
       <h2>Record and model</h2>
       <label>Record
-        <select id="record" value=${state.record} onChange=${(e) => choose('record', e.target.value)}>
+        <select id="record" value=${state.record} onChange=${(e) => open(e.target.value)}>
           ${!state.record && html`<option value="">choose, or drop a file</option>`}
           ${records.map((f) => html`<option value=${f.name}>${f.name}</option>`)}
         </select></label>
@@ -171,7 +185,7 @@ function usePlots({state, values, rms}) {
     const {shown} = now.current.state;
     if (from !== null && shown) {
       const span = to - from;  // moved into the record as a whole
-      if (span >= shown.to_s - shown.from_s) from = null;
+      if (span > 0.999 * (shown.to_s - shown.from_s)) from = null;
       else if (from < shown.from_s) [from, to] = [shown.from_s, shown.from_s + span];
       else if (to > shown.to_s) [from, to] = [shown.to_s - span, shown.to_s];
     }
@@ -210,6 +224,7 @@ function usePlots({state, values, rms}) {
     <section class=${'plots' + (shown ? '' : ' empty')}>
       <p class="row tools">
         <button onClick=${() => zoom(null, null)} disabled=${!zoomed}>Whole record</button>
+        <${ZoomButtons} turn=${(key) => stack.current.turn(key)} disabled=${!shown} />
         <button aria-pressed=${marking} onClick=${() => setMarking(!marking)} disabled=${!shown}>
           Leave out a stretch</button>
         ${zoomed && html`<button onClick=${() => leaveOut(view.current.from, view.current.to)}>
@@ -217,7 +232,7 @@ function usePlots({state, values, rms}) {
         ${before && html`<button aria-pressed=${alone} onClick=${() => setAlone(!alone)}
           title="the axes then fit the model that is shown">Hide ${before}</button>`}
         <span class="hint">${marking ? 'drag over the stretch that must not count'
-                                     : 'drag to zoom, double click for the whole record; keys: arrows + − 0'}</span>
+                                     : 'drag to zoom, double click for the whole record; keys: arrows + − 0; two fingers zoom'}</span>
       </p>
       <div class="stack" ref=${element}></div>
     </section>`};
@@ -290,6 +305,7 @@ function useMedia(query) {
 
 export function Workbench({state, progress}) {
   const [message, say] = useState(state.notice);
+  const [asked, ask] = useState(null);  // {name, map, read}: a record whose columns are not understood
   const [values, setValues] = useState({});
   const [preview, setPreview] = useState(null);
   const act = async (work) => {
@@ -320,7 +336,7 @@ export function Workbench({state, progress}) {
   return html`
     <main class="workbench">
       <div class="left">
-        <${Files} state=${state} act=${act} />
+        <${Files} state=${state} act=${act} ask=${ask} />
         <${Sliders} parameters=${state.shown ? state.parameters : []} values=${values}
                     set=${(name, value) => move({...plots.now.current.values, [name]: value})}
                     reset=${() => move({})} running=${state.running}
@@ -329,6 +345,8 @@ export function Workbench({state, progress}) {
       <div class="middle">
         ${message && html`<p class="message" role="alert">${message}
           <button class="plain" aria-label="close" onClick=${() => say('')}>×</button></p>`}
+        <${ReadAs} asked=${asked} close=${() => { ask(null); say(''); }}
+                   read=${(map) => act(async () => { await asked.read(map); ask(null); })} />
         <p class="printed">${state.record} against ${state.trial || state.model}</p>
         <${Welcome} state=${state} />
         <${Verdict} shown=${state.shown} trial=${state.trial} running=${state.running} act=${act}
