@@ -28,29 +28,32 @@ const Words kReferenceWords{
     "xdes",     "posdes",      "yd",           "xd",       "deseada",   "deseado",   "desejada",
     "desejado", "theoretical", "theoretisch*", "generator"};
 const Words kOtherWords{
-    "error*",     "err",         "fehler*", "deviation", "abweich*", "velocity*", "vel",
-    "speed*",     "geschw*",     "accel*",  "pressure*", "druck*",   "temp*",     "supply",
-    "limit",      "min",         "max",     "model*",    "sim*",     "estimat*",  "observer*",
-    "offset",     "status",      "tank",    "diff*",     "delta",    "lag",       "following",
-    "tolerance",  "toleranz*",   "window",  "predict*",  "pump",     "pumpe*",    "pumpen*",
-    "swash*",     "joystick*",   "pedal*",  "lever",     "hebel*",   "handle",    "knob",
-    "electrical", "elektrisch*", "swivel*", "schwenk*",  "std",      "stdev",     "stddev",
-    "sigma",      "variance",    "varianz", "remaining", "verbleib*"};
+    "error*",  "err",    "fehler*",   "deviation", "abweich*",  "velocity*", "vel",    "speed*",
+    "geschw*", "accel*", "pressure*", "druck*",    "temp*",     "supply",    "limit",  "min",
+    "max",     "model*", "sim*",      "estimat*",  "observer*", "offset",    "status", "tank",
+    "diff*",   "delta",  "lag",       "following", "tolerance", "toleranz*", "window", "predict*",
+    "pump",    "pumpe*", "pumpen*",   "swash*",    "swivel*",   "schwenk*",  "std",    "stdev",
+    "stddev",  "sigma",  "variance",  "varianz",   "remaining", "verbleib*"};
 /// Words of what a drive with a loop of its own is asked for.
 const Words kSpeedWords{"speed*", "velocity*", "geschw*", "drehzahl*"};
 const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
                            "feedback", "fbk",     "ist*", "mess*"};
 const Words kPressureWords{"pressure*", "press", "druck*"};
+/// Words of a position that is not the rod's.
+const Words kOtherPositionWords{"joystick*", "pedal*", "lever",      "hebel*",
+                                "handle",    "knob",   "electrical", "elektrisch*"};
+/// Words of a signal that drives no rod, unless another speaks of a command.
+const Words kAddedWords{"dither"};
 /// Words of the valve, whose position is not the rod's and whose reading is no command.
 const Words kSpoolWords{"spool*", "schieber*", "pilot*", "vorsteuer*", "hauptstufe*", "mainstage"};
 /// Words of a signal that drives no rod, whatever else its name says. "Plastic" is no "Last".
 const Words kNoDriveWords{
-    "battery",    "batterie*",     "zwischenkreis*", "mains",       "netz",       "netzspannung*",
-    "netzstrom*", "netzteil*",     "versorg*",       "sensor*",     "brake",      "bremse*",
-    "bus",        "relief",        "load*",          "last",        "lastkraft*", "lastmoment*",
-    "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*", "belast*",
-    "ff",         "feedforward*",  "heater*",        "heiz*",       "fan",        "lüfter*",
-    "cooler",     "cooling",       "kühl*",          "dither",      "lamp",       "disturbance*"};
+    "battery",    "batterie*",     "zwischenkreis*", "mains",       "netz",        "netzspannung*",
+    "netzstrom*", "netzteil*",     "versorg*",       "sensor*",     "brake",       "bremse*",
+    "bus",        "relief",        "load*",          "last",        "lastkraft*",  "lastmoment*",
+    "laststrom*", "lastspannung*", "lastmotor*",     "lastventil*", "motorlast*",  "belast*",
+    "ff",         "feedforward*",  "heater*",        "heiz*",       "fan",         "lüfter*",
+    "cooler",     "cooling",       "kühl*",          "lamp",        "disturbance*"};
 /// Words of a sensor's voltage or force, unless another word speaks of a command.
 const Words kSensorWords{"bridge", "excitation", "cell"};
 /// Words of a supply, unless the supplied drive is named: "DC motor voltage", "Link motor torque".
@@ -198,12 +201,14 @@ bool has_stem_of(Role role, const ReadColumn& column) {
 bool names_reference(std::string_view name) { return has_word(words_of(name), kReferenceWords); }
 
 bool is_reference(const ReadColumn& column) {
-  // The letters of control engineering, alone: r and y_d, and w in German.
-  constexpr std::array<std::string_view, 14> kLetters{
-      "r", "w", "yd", "xd", "qd", "yt", "xt", "thetad", "phid", "qt", "posd", "yr", "xr", "qr"};
-  const std::string name = folded(column.text.name);
+  // r alone, and w in German; y_d, x_r and q_t are set points, y(t) is a position
+  constexpr std::array<std::string_view, 14> kNames{
+      "r", "w", "yd", "xd", "qd", "yt", "xt", "qt", "yr", "xr", "qr", "theta_d", "phi_d", "posd"};
+  const std::string& name = column.text.name;
+  const bool called = name.find('(') == std::string::npos;
+  const auto is_name = [&](std::string_view known) { return folded(known) == folded(name); };
   return has_word(column.words, kReferenceWords) ||
-         std::find(kLetters.begin(), kLetters.end(), name) != kLetters.end();
+         (called && std::any_of(kNames.begin(), kNames.end(), is_name));
 }
 
 bool may_drive(const ReadColumn& column) {
@@ -307,9 +312,11 @@ int fit_of(Role role, const ReadColumn& column) {
     if (positional && !unit.known()) return 0;
     if (!may_drive(column)) return 0;
     if (has_word(column.words, kCommandWords)) return kStrong;
-    const bool drives = !positional && !has_word(column.words, kSensorWords);
+    const bool drives = !positional && !has_word(column.words, kAddedWords) &&
+                        !has_word(column.words, kSensorWords);
     return drives && has_word(column.words, kWeakCommandWords) ? kWeak : 0;
   }
+  if (has_word(column.words, kOtherPositionWords)) return 0;
   if (!unit.known() && has_word(column.words, kCommandWords)) return 0;
   if (has_word(column.words, kCommandWords)) return 0;  // a commanded position is a reference
   if (has_word(column.words, kPositionWords)) return kStrong + measured;

@@ -10,18 +10,25 @@ namespace {
 
 /// Words beside "voltage", "current", "torque" or "force" that say nothing against a command.
 const Words kNeutralWords{
-    "actuator*",  "aktor*",  "aktuator*", "servo*",    "coil*",       "spule*",   "solenoid*",
-    "magnet*",    "axis",    "achse*",    "axe",       "joint*",      "gelenk*",  "signal*",
-    "output",     "out",     "ausgang*",  "input",     "in",          "channel",  "ch",
-    "kanal",      "arm*",    "anker*",    "iq",        "rms",         "eff",      "applied",
-    "amplifier*", "amp",     "amps",      "verst*",    "analog",      "total",    "cylinder*",
-    "zylinder*",  "thrust*", "schub*",    "vorschub*", "drehmoment*", "electro*", "elektro*",
-    "torquer*",   "rotor*",  "spindel*",  "spindle*",  "generated",   "raw",      "filtered"};
-/// Words of what is asked for, and of what a position loop answers with.
+    "actuator",   "aktor",    "aktuator",  "servo",     "servomotor",  "coil",     "coils",
+    "spule",      "spulen",   "solenoid*", "magnet*",   "axis",        "achse",    "achsen",
+    "axe",        "joint*",   "gelenk*",   "signal*",   "output",      "out",      "ausgang*",
+    "input",      "in",       "channel",   "ch",        "kanal",       "armature", "anker",
+    "iq",         "rms",      "eff",       "applied",   "amplifier*",  "amp",      "amps",
+    "analog",     "total",    "cylinder*", "zylinder*", "thrust",      "schub",    "vorschub",
+    "dreh",       "electro*", "elektro*",  "electric*", "elektrisch*", "torquer",  "rotor",
+    "spindel",    "spindle",  "generated", "raw",       "filtered",    "cycle",    "phase",
+    "winding",    "windings", "wicklung*", "voice",     "duty",        "to",       "of",
+    "the",        "at",       "an",        "am",        "the",         "function", "generator",
+    "verstärker", "joystick*"};
+/// Words of what is asked for, of what comes in, and of what a position loop answers with.
 const Words kAskingWords{"command*", "cmd", "kommando*", "befehl*", "mando", "comando"};
-const Words kLoopOutputWords{"controller", "ctrl",    "control", "output", "out",
-                             "regler*",    "stell*",  "dac",     "ao",     "valve",
-                             "servovalve", "ventil*", "drive",   "u"};
+const Words kInputWords{"input", "eingang*"};
+const Words kLoopOutputWords{"controller", "ctrl", "output", "out",        "regler*", "stell*",
+                             "dac",        "ao",   "valve",  "servovalve", "ventil*", "u"};
+/// Words of positions that say as well what moves: "Rod command", "Opening command" are a drive's.
+const Words kDrivenWords{"rod",     "stroke",  "opening*", "öffnung*",
+                         "piston*", "kolben*", "extension"};
 /// Bytes of an ending such as the s of "torques".
 constexpr std::size_t kEnding = 2;
 
@@ -51,8 +58,12 @@ std::string doubt_of_command(const ReadColumn& column) {
   const std::vector<std::string>& words = column.words;
   if (has_stem_of(Role::command, column)) return "";
   if (has_word(words, kPositionWords)) {
-    const bool asked = has_word(words, kAskingWords) && !has_word(words, kLoopOutputWords);
-    return asked ? "may be the command, or what a position loop is asked for" : "";
+    std::vector<std::string> places = words;
+    std::erase_if(places, [](const std::string& word) { return has_word({word}, kDrivenWords); });
+    if (!has_word(places, kPositionWords) || has_word(words, kLoopOutputWords)) return "";
+    if (has_word(words, kAskingWords))
+      return "may be the command, or what a position loop is asked for";
+    return has_word(words, kInputWords) ? "may be the command, or a sensor's signal" : "";
   }
   if (has_word(words, kCommandWords) || has_word(words, kMotorWords)) return "";
   const bool unknown = is_measured(column) ||

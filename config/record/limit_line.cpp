@@ -142,8 +142,9 @@ bool is_factor_word(std::string_view field) {
                                                     "verst\xC3\xA4rkung",
                                                     "conversion",
                                                     "umrechnung"};
-  constexpr std::array<std::string_view, 7> kOthers{"vertical",   "horizontal", "vscale", "hscale",
-                                                    "controller", "regler",     "against"};
+  constexpr std::array<std::string_view, 9> kOthers{"vertical", "horizontal",     "vscale",
+                                                    "hscale",   "controller",     "regler",
+                                                    "against",  "conversionrate", "conversiontime"};
   const std::string word = folded(field);
   if (is_limit_word(field) || has_any(word, kOthers)) return false;
   // "duration" and "calibration" are no ratios

@@ -126,11 +126,12 @@ Record read_file(const std::filesystem::path& file, const ReadOptions& options) 
   return read_csv(window, file.string(), options);
 }
 
-/// Refuses a length where the model turns; a column y_m without another unit may hold rad.
+/// Refuses a length where the model turns, but for the project's own y_m, which stands for rad
+/// there.
 void require_the_axis_kind(const Record& record) {
   if (record.position_unit != "m" || units::axis_unit("m") == "m") return;
   for (const ChannelOrigin& origin : record.origins) {
-    if (origin.name != "y_m" || origin.unit.empty() || origin.unit == "m") continue;
+    if (origin.name != "y_m" || origin.unit.empty() || origin.header == "y_m") continue;
     throw schema::bad_data(record.name,
                            "has a position in " + origin.unit + ", but the model's axis turns",
                            "an angle, or --map 'y=" + origin.header + "[rad]' where it is one");
@@ -141,7 +142,7 @@ void require_the_axis_kind(const Record& record) {
 
 Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
   Record record = read_file(file, options);
-  require_the_axis_kind(record);
+  if (!options.position_optional) require_the_axis_kind(record);
   take_command(record, options);
   return record;
 }

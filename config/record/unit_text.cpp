@@ -43,8 +43,9 @@ constexpr std::array kUnits{
     KnownUnit{"kNm", "Nm", 1e3},
     KnownUnit{"mNm", "Nm", 1e-3},
     KnownUnit{"Ncm", "Nm", 1e-2},
-    KnownUnit{"lbf in|lbf*in|lbf·in|in lbf|in-lbf|in·lbf", "Nm", kPoundForce_N* kInch_m},
-    KnownUnit{"lbf ft|lbf*ft|lbf·ft|ft lbf|ft-lbf|ft·lbf", "Nm", 12.0 * kPoundForce_N* kInch_m},
+    KnownUnit{"lbf in|lbf*in|lbf·in|lbf-in|in lbf|in-lbf|in·lbf", "Nm", kPoundForce_N* kInch_m},
+    KnownUnit{"lbf ft|lbf*ft|lbf·ft|lbf-ft|ft lbf|ft-lbf|ft·lbf", "Nm",
+              12.0 * kPoundForce_N* kInch_m},
     KnownUnit{"m|metre|meter|metres|meters", "m", 1.0},
     KnownUnit{"cm", "m", 1e-2},
     KnownUnit{"mm|millimetre|millimeter|millimetres|millimeters", "m", 1e-3},
@@ -170,7 +171,8 @@ bool is_unit(std::string_view text) {
 
 UnitText parse_plain_unit(std::string_view text) {
   text = without_brackets(text);
-  if (text.starts_with("in ") && text.size() > 3) text = trimmed(text.substr(3));
+  if (text.starts_with("in ") && text.size() > 3 && find_unit(text) == nullptr)
+    text = trimmed(text.substr(3));
   UnitText unit;
   unit.text = std::string(text);
   std::string plain = unit.text;

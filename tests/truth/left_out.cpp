@@ -73,7 +73,7 @@ double LeftOut::command_V(double u_V, double t_s) const {
 double LeftOut::reading_m(double y_m, double acceleration_mps2, double t_s) const {
   switch (kind) {
     case Kind::scale_drift:
-      return y_m + (y_m - kCentre_m) * size * t_s / kRecord_s;
+      return y_m + (y_m - kCentre_m - where) * size * t_s / kRecord_s;
     case Kind::mount_compliance:
       return y_m + size * acceleration_mps2;
     default:

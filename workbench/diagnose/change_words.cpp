@@ -8,6 +8,7 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/free_parameter.h"
+#include "estimator/greybox/selection/law_dictionary.h"
 #include "workbench/diagnose/effect_words.h"
 
 namespace workbench::diagnose {
@@ -75,8 +76,8 @@ std::string beside_changes(const selection::Diagnosis& d) {
   return names_words(d, established) + (established.size() > 1 ? " are" : " is") + " missing, and ";
 }
 
-/// "reading_scale is a position sensor whose scale is off." for the changes of what the library
-/// has no effect for.
+/// "reading_scale: position sensor whose scale is off." for the changes, and their rivals, of what
+/// the library has no effect for.
 std::string law_words(const selection::Diagnosis& d) {
   std::string text;
   for (const plant_sim::formula::FormulaEffect& law : d.better.formula_effects) {
@@ -85,6 +86,14 @@ std::string law_words(const selection::Diagnosis& d) {
     });
     if (changes) text += " " + law.name + ": " + law.what + ".";
   }
+  const auto is_reading_scale = [](const std::string& parameter) {
+    return parameter.starts_with(std::string(selection::kReadingScale) + ".");
+  };
+  const bool is_rival = std::any_of(d.changing.begin(), d.changing.end(), [&](const auto& change) {
+    return std::any_of(change.rivals.begin(), change.rivals.end(), is_reading_scale);
+  });
+  if (is_rival && text.empty())
+    text = std::string(" ") + selection::kReadingScale + ": " + selection::kReadingScaleWords + ".";
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "config/record/hdf5/handle.h"
+#include "config/record/text_fields.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
@@ -54,30 +56,46 @@ std::optional<std::string> text_attribute(hid_t object, const char* name) {
   return text;
 }
 
-/// The number of an attribute, `otherwise` where there is none.
-double number_attribute(hid_t object, const char* name, double otherwise) {
-  if (H5Aexists(object, name) <= 0) return otherwise;
+/// The numbers of an attribute, that of a text among them; empty: none.
+std::vector<double> number_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  if (const std::optional<std::string> text = text_attribute(object, name)) {
+    double value = 0.0;
+    return parse_number(*text, '.', value) ? std::vector{value} : std::vector<double>{};
+  }
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  if (!attribute.valid()) return otherwise;
+  if (!attribute.valid()) return {};
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
   const H5T_class_t kind = type.valid() ? H5Tget_class(type.get()) : H5T_NO_CLASS;
-  double value = otherwise;
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) ||
-      H5Sget_simple_extent_npoints(space.get()) != 1 ||
-      H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) {
-    return otherwise;
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count < 1 ||
+      count > static_cast<hssize_t>(kMostColumns)) {
+    return {};
   }
-  return value;
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, values.data()) < 0) return {};
+  return values;
 }
 
-/// Unpacks numbers as the conventions of NetCDF (CF 8.1) state them: scale_factor and add_offset.
+constexpr const char* kFactor = "scale_factor";
+constexpr const char* kOffset = "add_offset";
+
+/// Unpacks numbers as the conventions of NetCDF (CF 8.1) state them: scale_factor and add_offset,
+/// of what is neither _FillValue nor missing_value.
 void unpack(hid_t dataset, MatVariable& variable) {
-  const double factor = number_attribute(dataset, "scale_factor", 1.0);
-  const double offset = number_attribute(dataset, "add_offset", 0.0);
-  if (factor == 1.0 && offset == 0.0) return;
+  const auto number = [&](const char* name, double otherwise) {
+    const std::vector<double> values = number_attribute(dataset, name);
+    return values.size() == 1 ? values.front() : otherwise;
+  };
+  const double factor = number(kFactor, 1.0);
+  const double offset = number(kOffset, 0.0);
+  const double fill = number("_FillValue", std::nan(""));
+  const double missing = number("missing_value", std::nan(""));
   const auto unpack_all = [&](std::vector<double>& values) {
-    for (double& value : values) value = factor * value + offset;
+    for (double& value : values) {
+      value = value == fill || value == missing ? std::nan("") : factor * value + offset;
+    }
   };
   unpack_all(variable.values);
   for (MatVariable& column : variable.fields) unpack_all(column.values);
@@ -95,24 +113,26 @@ void for_each_attribute(hid_t object, Take take) {
 }
 
 /// "has the attribute gain 0.01": numbers that convert the values, of whatever convention; empty:
-/// none, or all change nothing. Those of NetCDF are applied (unpack()).
-std::string conversion_words(hid_t dataset) {
+/// none, or all change nothing. `unpacked`: those of NetCDF are applied, where they are one number.
+std::string conversion_words(hid_t dataset, bool unpacked) {
   constexpr std::array<std::string_view, 9> kFactors{"gain",       "slope",       "conversion",
                                                      "scale",      "scalefactor", "factor",
                                                      "multiplier", "calibration", "sensitivity"};
-  constexpr std::array<std::string_view, 3> kOffsets{"offset", "intercept", "bias"};
+  constexpr std::array<std::string_view, 4> kOffsets{"offset", "intercept", "bias", "addoffset"};
   std::string words;
   for_each_attribute(dataset, [&](const std::string& name) {
-    if (name == "scale_factor" || name == "add_offset") return;
     const std::string word = folded(name);
     const bool factor = std::find(kFactors.begin(), kFactors.end(), word) != kFactors.end();
     const bool offset = std::find(kOffsets.begin(), kOffsets.end(), word) != kOffsets.end();
     if (!factor && !offset) return;
+    const std::vector<double> values = number_attribute(dataset, name.c_str());
     const double nothing = factor ? 1.0 : 0.0;
-    const double value = number_attribute(dataset, name.c_str(), nothing);
-    if (value == nothing) return;
-    words +=
-        (words.empty() ? "has the attribute " : " and ") + name + " " + fmt::format("{:g}", value);
+    const bool changes_nothing =
+        std::all_of(values.begin(), values.end(), [&](double value) { return value == nothing; });
+    const bool applied = unpacked && values.size() == 1 && (name == kFactor || name == kOffset);
+    if (changes_nothing || applied) return;
+    words += fmt::format("{}{} {:g}", words.empty() ? "has the attribute " : " and ", name,
+                         fmt::join(values, ", "));
   });
   return words;
 }
@@ -196,11 +216,11 @@ class FileReader {
       variable.type = "number";
       read_numbers(dataset, dims, variable);
       unpack(dataset, variable);
-      variable.factor = conversion_words(dataset);
-      for (MatVariable& column : variable.fields) column.factor = variable.factor;
     } else {
       variable.type = kind == H5T_STRING ? "text" : "no number";
     }
+    variable.factor = conversion_words(dataset, kind != H5T_COMPOUND);
+    for (MatVariable& column : variable.fields) column.factor = variable.factor;
   }
 
   void read_numbers(hid_t dataset, const std::vector<hsize_t>& dims, MatVariable& variable) {

@@ -21,6 +21,8 @@ constexpr double kDriftSettles = 0.2;
 constexpr double kConstantsOfRamp = 2.5;
 /// Range of a changed plant parameter about the present value, in logarithms.
 constexpr double kRange = 2.3;
+/// Scale that a drift is begun with, in typical ones.
+constexpr double kSmallScale = 0.1;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A time within the record, counted from `start_s` so that difference quotients take a tenth of a
@@ -137,10 +139,48 @@ double error_of(const FitSummary& fitted, const Eigen::VectorXd& errors, const s
 
 }  // namespace
 
+namespace {
+
+/// A scale that drifts from the first sample to the last, about the middle of the motion and about
+/// the sensor's zero: what an offset that drifts with it leaves hides it from a score.
+void add_scales(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
+  for (const std::string& law : stage.context.problem.shown_by_change) {
+    ChangeScore score = score_of_effect(stage, law);
+    if (score.parameter.name.empty() || !score.absent) continue;
+    score.zero_before = true;
+    set_throughout(score, stage.context.problem.data.records.front());
+    for (const double by : {kSmallScale, -kSmallScale}) {
+      score.by = by;
+      score.about_m.reset();
+      scores.push_back(score);
+      score.about_m = 0.0;
+      scores.push_back(score);
+    }
+  }
+}
+
+}  // namespace
+
 std::string name_of(const ChangeScore& score) {
   const std::string in = score.record.empty() ? "" : kInRecord + score.record;
   return "change." + score.parameter.name + in;
 }
+
+namespace {
+
+/// The effect's other parameters, which are the same before and after its size changes.
+void append_constants(const SearchContext& context, const ChangeScore& score,
+                      ParameterSubset& all) {
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    if (effect.name != effect_of(score.parameter)) continue;
+    for (const FreeParameter& other : effect_parameters(effect, kEveryRefinement)) {
+      if (other.name != score.parameter.name)
+        add(all, other, score.about_m ? other.to_theta(*score.about_m) : 0.0);
+    }
+  }
+}
+
+}  // namespace
 
 ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage,
                         const ChangeScore& score) {
@@ -150,9 +190,11 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
   const FitSummary& fitted = stage.model.fitted;
   ParameterSubset all = subset(fitted, [](const auto&) { return true; });
   double theta = 0.0;
-  if (score.absent && !score.sets_in) {
+  if (score.zero_before) {
+    append_constants(plain, score, all);
+  } else if (score.absent) {
     append(all, {{score.parameter}, Eigen::VectorXd::Zero(1)});
-  } else if (!score.absent) {
+  } else {
     for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
       if (fitted.parameters[i].name != score.parameter.name) continue;
       theta = fitted.theta[static_cast<Eigen::Index>(i)];
@@ -202,6 +244,7 @@ std::vector<ChangeScore> change_candidates(const InnovationStage& stage) {
   std::vector<ChangeScore> scores = finalists(stage);
   add_jumps(stage, scores);
   for (ChangeScore& drift : drifts_of(stage)) scores.push_back(std::move(drift));
+  add_scales(stage, scores);
   // a record has one change of a parameter
   std::erase_if(scores, [&](const ChangeScore& score) {
     const auto& known = stage.context.problem.model.changes;

@@ -39,8 +39,8 @@ constexpr double kHeldRange = 2.3;
 /// distances that the model's own parameters keep from their priors.
 struct Columns {
   std::vector<FreeParameter> parameters;
-  std::vector<bool> unfitted;  ///< the model has no freedom of this parameter
-  std::vector<bool> sets_in;   ///< nor is it sought but by its change
+  std::vector<bool> unfitted;     ///< the model has no freedom of this parameter
+  std::vector<bool> zero_before;  ///< as in ChangeScore
   MatrixXd values;
   VectorXd rest;  ///< the innovations, and the distances from the priors
 
@@ -100,15 +100,12 @@ void add_unfitted(const InnovationStage& stage, Columns& columns) {
           (residuals_m.col(i) - fitted.residual_m) / (kSmall * floor_m);
     }
   }
-  const auto is_law = [&](const FreeParameter& size) {
-    const auto& laws = context.problem.model.formula_effects;
-    return std::any_of(laws.begin(), laws.end(),
-                       [&](const auto& law) { return law.name == effect_of(size); });
-  };
+  const std::vector<std::string>& by_change = context.problem.shown_by_change;
   for (const FreeParameter& size : sizes) {
     columns.parameters.push_back(size);
     columns.unfitted.push_back(true);
-    columns.sets_in.push_back(is_law(size));
+    columns.zero_before.push_back(std::find(by_change.begin(), by_change.end(), effect_of(size)) !=
+                                  by_change.end());
   }
 }
 
@@ -282,9 +279,9 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
     if (columns.parameters[i].name.starts_with("change."))
       continue;  // part of a change found before
     const VectorXd column = columns.values.col(c);
-    const bool sets_in = columns.sets_in[i];
-    const Course course(basis, rest, column, columns.unfitted[i] && !sets_in);
-    ChangeScore score{columns.parameters[i], columns.absent(i), sets_in};
+    const bool zero_before = columns.zero_before[i];
+    const Course course(basis, rest, column, columns.unfitted[i] && !zero_before);
+    ChangeScore score{columns.parameters[i], columns.absent(i), zero_before, {}};
     score.throughout_nats = course.throughout_nats();
     ChangeScore step = score;
     const Index at = course.score_steps(grid, t_s.size(), step);
@@ -337,7 +334,7 @@ std::vector<ChangeScore> record_scores(const InnovationStage& stage) {
             .segment(static_cast<Index>(data.starts[r]), static_cast<Index>(data.records[r].size()))
             .setOnes();
       }
-      ChangeScore score{columns.parameters[i], columns.absent(i), false, ChangeKind::record};
+      ChangeScore score{columns.parameters[i], columns.absent(i), false, {}, ChangeKind::record};
       score.record = name;
       course.score(within, score);
       scores.push_back(std::move(score));

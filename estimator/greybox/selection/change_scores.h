@@ -9,6 +9,7 @@
 // both projected from the space of the model's own freedom.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_stage.h"
@@ -18,8 +19,9 @@ namespace estimator::greybox::selection {
 
 struct ChangeScore {
   FreeParameter parameter;
-  bool absent = false;   ///< the size of an effect that the model does not have
-  bool sets_in = false;  ///< nothing before the change, as a law whose size cannot be seen
+  bool absent = false;              ///< the size of an effect that the model does not have
+  bool zero_before = false;         ///< 0 until the change begins: no constant value is fitted
+  std::optional<double> about_m{};  ///< start of the effect's other parameter, where it has one
   ChangeKind kind = ChangeKind::step;
   double at_s = 0.0;
   double duration_s = 0.0;

@@ -302,6 +302,7 @@ FoundChanges changes_from(ChangeSearch search, const std::vector<ChangeProposal>
 SearchContext with_changing_laws(const SearchContext& context, const std::vector<Law>& laws) {
   SearchContext result = with_laws(context, laws, names_of(context.problem.candidate_effects));
   result.problem.trial_sizes = context.problem.trial_sizes;
+  for (const Law& law : laws) result.problem.shown_by_change.push_back(law.effect.name);
   return result;
 }
 

@@ -239,18 +239,6 @@ void look_beyond_effects(const SearchContext& search, const ModelStage& first,
   }
 }
 
-/// The record itself, looked at where the fitted model is far from the noise.
-std::optional<RecordChecks> checks_of(const SearchContext& search, const SearchStart& start,
-                                      double noise_floor_m) {
-  const double rms_m = start.first.fitted.validation_rms_m;
-  if (!(rms_m > kFarFromFloor * noise_floor_m)) return {};
-  RecordChecks checks = check_records(search, rms_m);
-  try_other_readings(search, start, checks);
-  // an effect that explains the record has read it rightly
-  if (checks.misread() && is_explained(search, start.branch.stage)) return {};
-  return checks;
-}
-
 /// A command acts at the sample at which it is logged, or may act before.
 enum class CommandTimes { as_logged, may_lead };
 
@@ -340,7 +328,8 @@ Diagnosis diagnose_by_steps(const DiagnosisProblem& problem, const DiagnosisOpti
   begin_rounds(search, start);
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   result.search = abandon_search(search, start);
-  result.checks = checks_of(search, start, result.noise_floor_m);
+  if (start.first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m)
+    result.checks = checks_of_reading(search, start);
   if (result.checks && result.checks->misread()) {
     conclude(context, search, result);
   } else if (!explain_beyond_effects(search, start, result)) {
@@ -368,15 +357,17 @@ bool is_open(const Diagnosis& result) {
 /// matter: stick-slip hides what is missing beside it, and an effect may stand for that error.
 void refine_step(const DiagnosisProblem& problem, const DiagnosisOptions& options,
                  Diagnosis& result) {
-  const bool cancelled = options.cancel && options.cancel();
-  if (!is_open(result) || !result.has_coarse_step() || cancelled) return;
+  const auto is_cancelled = [&] { return options.cancel && options.cancel(); };
+  if (!is_open(result) || !result.has_coarse_step() || is_cancelled()) return;
   DiagnosisProblem used = problem;
   used.model.step_s = result.better.step_s;
   const auto finer = with_finer_step(used);
   if (!finer) return;
   Diagnosis again = diagnose_by_steps(*finer, options);
-  if (again.search.interrupted || (is_open(again) && options.cancel && options.cancel())) return;
-  if (!is_open(again) || again.rms_after_m < kFinerLeaves * result.rms_after_m) {
+  const bool misread = again.checks && again.checks->misread();
+  const bool is_settled = !is_open(again) && !misread;
+  if (again.search.interrupted || (!is_settled && is_cancelled())) return;
+  if (is_settled || again.rms_after_m < kFinerLeaves * result.rms_after_m) {
     result = std::move(again);
   }
 }

@@ -43,9 +43,14 @@ class Dictionary {
 
   /// Empty where the plant has no site for it.
   std::vector<Law> changing_laws() {
-    add("reading_scale", "position sensor whose scale is off", "sensor",
-        fmt::format("y_m + scale_ratio * (y_m - {})", place_m(rig_.centre_m)),
-        {size("scale_ratio", kTypicalScale, Sign::both)}, {"y"});
+    FormulaEffect::Parameter zero = rest();
+    zero.name = "zero_m";
+    zero.what = "position that the sensor shows rightly all the time";
+    // the record's own zero is likely to be the sensor's
+    zero.min = std::min(zero.min, -rounded(rig_.length_m));
+    zero.max = std::max(zero.max, rounded(rig_.length_m));
+    add(kReadingScale, kReadingScaleWords, "sensor", "y_m + scale_ratio * (y_m - zero_m)",
+        {size("scale_ratio", kTypicalScale, Sign::both), zero}, {"y"});
     return std::move(laws_);
   }
 

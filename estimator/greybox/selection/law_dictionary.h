@@ -29,6 +29,9 @@ enum class LawChoice {
                                               const FitDataset& data,
                                               LawChoice choice = LawChoice::unexplained);
 
+inline constexpr const char* kReadingScale = "reading_scale";
+inline constexpr const char* kReadingScaleWords = "position sensor whose scale is off";
+
 /// Laws that a record shows where their sizes change within it alone: a constant scale of the
 /// position sensor is a gain.
 [[nodiscard]] std::vector<Law> changing_laws(const plant_sim::ModelFile& model,

@@ -84,4 +84,14 @@ void try_other_readings(const SearchContext& context, const SearchStart& start,
   }
 }
 
+std::optional<RecordChecks> checks_of_reading(const SearchContext& context,
+                                              const SearchStart& start) {
+  if (context.cancelled()) return {};
+  RecordChecks checks = check_records(context, start.first.fitted.validation_rms_m);
+  try_other_readings(context, start, checks);
+  const bool is_read_rightly = is_explained(context, start.branch.stage);
+  if (checks.misread() && (is_read_rightly || context.cancelled())) return {};
+  return checks;
+}
+
 }  // namespace estimator::greybox::selection

@@ -7,6 +7,8 @@
 // search for effects tells.
 #pragma once
 
+#include <optional>
+
 #include "estimator/greybox/selection/record_checks.h"
 #include "estimator/greybox/selection/structure_search.h"
 
@@ -17,5 +19,11 @@ namespace estimator::greybox::selection {
 /// record as read.
 void try_other_readings(const SearchContext& context, const SearchStart& start,
                         RecordChecks& checks);
+
+/// The record itself and how it is read, looked at where the model as given is far from it. None
+/// where an effect explains the record, which has then been read rightly, or once cancelled: a fit
+/// that was cut off is far from the record for want of time.
+[[nodiscard]] std::optional<RecordChecks> checks_of_reading(const SearchContext& context,
+                                                            const SearchStart& start);
 
 }  // namespace estimator::greybox::selection

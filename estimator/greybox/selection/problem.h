@@ -38,6 +38,8 @@ struct DiagnosisProblem {
   FitDataset data;
   /// Offered by the plant and absent so far; of effects that the model has, what it lacks of them.
   std::vector<plant_sim::EffectInfo> candidate_effects;
+  /// Of the candidates, those whose size a record shows only where it changes.
+  std::vector<std::string> shown_by_change = {};
   bool effects_only = false;                    ///< neither laws nor changes are sought
   std::vector<FreeParameter> plant_parameters;  ///< plant and present effects
   Eigen::Index trial_sizes = kTrialSizes;       ///< fewer where they fit the rig

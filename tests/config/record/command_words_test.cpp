@@ -54,8 +54,9 @@ TEST(Words, OfAForceMayBeALoadCellsWhereAnotherSignalMayDrive) {
 
 TEST(Words, OfSomethingElsesForceOrVoltageAreAskedAbout) {
   for (const char* command :
-       {"Spring force [N]", "Federkraft [N]", "Friction force [N]", "Reaction torque [Nm]",
-        "Measured torque [Nm]", "Transducer voltage [V]", "Poti voltage [V]", "Id current [A]"}) {
+       {"Spring force [N]", "Federkraft [N]", "Friction force [N]", "Recoil force [N]",
+        "Harmonic force [N]", "Reaction torque [Nm]", "Measured torque [Nm]", "Alarm voltage [V]",
+        "Transducer voltage [V]", "Poti voltage [V]", "Id current [A]"}) {
     EXPECT_THAT(error_of(with_columns(command)),
                 AllOf(HasSubstr(std::string("column ") + command +
                                 " may be the command, or a measurement beside it"),
@@ -63,23 +64,37 @@ TEST(Words, OfSomethingElsesForceOrVoltageAreAskedAbout) {
         << command;
     EXPECT_EQ(read(with_columns(command), std::string("u=") + command).u_V[1], 2.0) << command;
   }
-  EXPECT_THAT(error_of(with_columns("Position command [V]")),
-              HasSubstr("may be the command, or what a position loop is asked for"));
-  for (const char* command : {"Motor torque measured [Nm]", "Drehmoment [Nm]", "Ankerstrom [A]",
-                              "Torque [lbf in]", "Iq current [A]", "Coil currents [A]",
-                              "Position controller output [V]", "Valve current 1 [mA]"}) {
-    EXPECT_NE(read(with_columns(command)).u_V[1], 0.0) << command;
+  for (const char* command :
+       {"Position command [V]", "Drive position command [V]", "Position control command [V]"}) {
+    EXPECT_THAT(error_of(with_columns(command)),
+                HasSubstr("may be the command, or what a position loop is asked for"))
+        << command;
+  }
+  for (const char* command : {"Position input [V]", "LVDT input [V]"}) {
+    EXPECT_THAT(error_of(with_columns(command)), HasSubstr("may be the command, or a sensor's"))
+        << command;
   }
   for (const char* other : {"Heater command [%]", "Fan voltage [V]", "Dither voltage [V]"}) {
     EXPECT_THAT(error_of(with_columns(other)), HasSubstr("lacks a command column")) << other;
   }
 }
 
+TEST(Words, OfADriveAreNotAskedAbout) {
+  for (const char* command :
+       {"Motor torque measured [Nm]", "Drehmoment [Nm]", "Ankerstrom [A]", "Torque [lbf in]",
+        "Iq current [A]", "Coil currents [A]", "Voice coil current [A]", "Phase current [A]",
+        "PWM duty cycle [%]", "Voltage to amplifier [V]", "Electrical torque [Nm]",
+        "Position controller output [V]", "Valve current 1 [mA]", "Opening command [%]",
+        "Rod command [V]", "Stroke command [V]", "Joystick command [%]",
+        "Valve command with dither [V]"}) {
+    EXPECT_EQ(error_of(with_columns(command)), "no error") << command;
+  }
+}
+
 TEST(Words, OfWhatIsNoMeasurementAreNoPosition) {
   for (const char* position :
        {"Position std [mm]", "Theoretical position [mm]", "Generator position [mm]",
-        "Posición deseada [mm]", "Remaining stroke [mm]", "q_d [rad]", "x_t [mm]", "pos_d [mm]",
-        "Joystick position [mm]", "Resolver angle electrical [deg]"}) {
+        "Posición deseada [mm]", "Remaining stroke [mm]", "q_d [rad]", "x_t [mm]", "pos_d [mm]"}) {
     const std::string text =
         std::string("Time [s],Command [V],") + position + "\n0,1,2\n1,2,3\n2,1,2\n";
     EXPECT_THAT(error_of(text), AllOf(HasSubstr("lacks a position column"),
@@ -88,6 +103,13 @@ TEST(Words, OfWhatIsNoMeasurementAreNoPosition) {
   }
   EXPECT_THAT(error_of(with_columns("Feedforward command [V]")),
               HasSubstr("lacks a command column"));
+  for (const char* other : {"Joystick position [mm]", "Resolver angle electrical [deg]"}) {
+    EXPECT_THAT(error_of(std::string("Time [s],Command [V],") + other + "\n0,1,2\n1,2,3\n2,1,2\n"),
+                HasSubstr("lacks a position column"));
+  }
+  // as a function of time it is one, beside which a weaker word does not count
+  EXPECT_EQ(read("t [s],u(t) [V],height [mm],y(t) [mm]\n0,1,9,2\n1,2,9,3\n2,1,9,2\n").y_m[1],
+            0.003);
 }
 
 TEST(Words, OfALoadABusOrABrakeAreNoCommandWhateverStandsBeside) {

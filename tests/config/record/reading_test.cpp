@@ -77,6 +77,13 @@ TEST(UnitText, FindsTheUnitInAHeader) {
   EXPECT_EQ(parts("pressure_in"), "pressure_in|");  // no inches
   EXPECT_EQ(parts("Position (\")"), "Position|m");
   EXPECT_EQ(parts("Torque [lbf in]"), "Torque|Nm");
+  EXPECT_EQ(parts("Torque [in lbf]"), "Torque|Nm");
+  EXPECT_EQ(parts("Position [in mm]"), "Position|m");
+  // NIST SP 811: 1 lbf in = 0.1129848 N m, 1 lbf ft = 1.355818 N m
+  for (const char* torque : {"lbf in", "in lbf", "lbf-in", "in-lbf", "IN LBF"})
+    EXPECT_NEAR(parse_unit(torque).factor, 0.1129848, 1e-7) << torque;
+  for (const char* torque : {"lbf ft", "ft lbf", "lbf-ft"})
+    EXPECT_NEAR(parse_unit(torque).factor, 1.355818, 1e-6) << torque;
   EXPECT_EQ(parts("y_in"), "y|m");
   EXPECT_EQ(parts("y_min"), "y_min|");  // no minutes
   EXPECT_EQ(parts("Position [counts]"), "Position|");

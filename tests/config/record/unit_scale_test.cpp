@@ -129,6 +129,15 @@ TEST(StatedFactors, AreThoseThatChangeANumber) {
   // the screen's scale, not the values'
   EXPECT_THAT(stated_factors({"Vertical Scale", "2", "0.5"}, '.'), IsEmpty());
   EXPECT_THAT(stated_factors({"Controller gain", "2", ""}, '.'), IsEmpty());  // a setting
+  for (const std::string word : {"Calibration factor", "Conversion", "Umrechnung", "LSB", "Sign",
+                                 "Vorzeichen", "Zero", "Bias", "Ratio"}) {
+    EXPECT_THAT(stated_factors({word, "", "0.25"}, '.'),
+                ElementsAre("", "", "'" + word + "' '0.25'"));
+  }
+  for (const std::string word :
+       {"Signal", "Duration", "Calibration date", "Zeros", "Conversion rate", "Conversion time"}) {
+    EXPECT_THAT(stated_factors({word, "", "0.25"}, '.'), IsEmpty()) << word;
+  }
 }
 
 TEST(StatedFactors, AreAllButOne) {

@@ -97,6 +97,13 @@ TEST_F(Rotary, ALengthIsNoAngle) {
       testing::ThrowsMessage<config::schema::DataError>(
           testing::AllOf(HasSubstr("mm.csv: has a position in mm, but the model's axis turns"),
                          HasSubstr("--map 'y=Position [mm][rad]'"))));
+  std::ofstream(file("m.csv")) << "Time [s],Command [V],Position [m]\n0,1,2\n0.01,1,3\n0.02,1,4\n";
+  EXPECT_THAT(
+      [&] {
+        (void)workbench_test::run_command(add_compare, {model, file("m.csv")});
+      },
+      testing::ThrowsMessage<config::schema::DataError>(
+          HasSubstr("has a position in m, but the model's axis turns")));
 }
 
 TEST_F(Rotary, FitSaysAngles) {

@@ -101,8 +101,12 @@ def watch(args, folder):
             page.wait("parseFloat((document.querySelector('.beside-model').innerText.match(/([0-9.]+) × floor/)"
                       " || [])[1]) < 3", 40)
             page.wait("document.querySelector('#trigger-mode').value === 'single'")
+            page.type("#trigger-level", "0", "change")  # typed, 0 stays
             page.choose("#trigger-mode", "off")
             page.wait("!document.querySelector('.captured')")
+            page.choose("#trigger-mode", "normal")
+            page.wait("document.querySelector('#trigger-level').value === '0'")
+            page.choose("#trigger-mode", "off")
 
             # The page acknowledges; it has no button that moves the rod.
             buttons = page.run("[...document.querySelectorAll('button')].map((b) => b.textContent.trim().toLowerCase())")

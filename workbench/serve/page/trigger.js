@@ -15,6 +15,7 @@ export function TriggerTools({status, channels, meters, capture, onShow, onSaved
   const [said, say] = useState('');
   const server = status && status.trigger;
   const of = (all) => Object.fromEntries(Object.keys(FIRST).map((key) => [key, all[key]]));
+  const chosen = useRef(false);  // the level was typed, which 0 may be too
   const taken = useRef(''), sent = useRef({text: '', at: 0});
   // Another page has set it; a status that was on its way while this one sets it is older.
   useEffect(() => {
@@ -37,7 +38,9 @@ export function TriggerTools({status, channels, meters, capture, onShow, onSaved
   const set = (change) => {
     const next = {...settings, ...change};
     const meter = meters[next.channel];
-    const starts = settings.mode === 'off' && !settings.level;
+    chosen.current = chosen.current || 'level' in change;
+    const starts = settings.mode === 'off' && !chosen.current && !settings.level;
+    if ('channel' in change) chosen.current = false;
     if (meter && ('channel' in change || starts)) next.level = +meter.mean.toPrecision(4);
     setSettings(next);
     sent.current = {text: JSON.stringify(of(next)), at: Date.now()};

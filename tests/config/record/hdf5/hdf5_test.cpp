@@ -13,6 +13,7 @@
 
 #include "config/record/hdf5/hdf5_variables.h"
 #include "config/record/record.h"
+#include "config/record/unit_text.h"
 #include "config/schema/error.h"
 #include "tests/config/record/temporary_file.h"
 
@@ -147,7 +148,7 @@ TEST_F(Hdf5, UnpacksScaledNumbers) {
 }
 
 TEST_F(Hdf5, RefusesConversionsOfOtherConventions) {
-  for (const char* name : {"gain", "Scale", "conversion", "SCALE_FACTOR", "Offset"}) {
+  for (const char* name : {"gain", "Scale", "conversion", "SCALE_FACTOR", "Offset", "ADD_OFFSET"}) {
     for (const double value : {1.0, 0.0, 100.0}) {
       const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
       write_vector(file, "t_s", t_s_);
@@ -157,7 +158,7 @@ TEST_F(Hdf5, RefusesConversionsOfOtherConventions) {
       set_number(position, name, value);
       H5Dclose(position);
       H5Fclose(file);
-      if (value == (name == std::string("Offset") ? 0.0 : 1.0)) {
+      if (value == (folded(name).ends_with("offset") ? 0.0 : 1.0)) {
         expect_the_motion(read());
       } else {
         EXPECT_THAT(
@@ -167,6 +168,62 @@ TEST_F(Hdf5, RefusesConversionsOfOtherConventions) {
       }
     }
   }
+}
+
+TEST_F(Hdf5, RefusesConversionsOfColumnsAndInWords) {
+  const auto written = [&](const auto& attribute) {
+    const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    write_vector(file, "t_s", t_s_);
+    write_vector(file, "u_V", u_V_);
+    write_vector(file, "y_mm", y_mm_);
+    const hid_t position = H5Dopen2(file, "y_mm", H5P_DEFAULT);
+    attribute(position);
+    H5Dclose(position);
+    H5Fclose(file);
+  };
+  written([&](hid_t position) {
+    const hsize_t count[] = {3};
+    const double gains[] = {1.0, 0.1, 0.2};
+    const hid_t space = H5Screate_simple(1, count, nullptr);
+    const hid_t one =
+        H5Acreate2(position, "gain", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(one, H5T_NATIVE_DOUBLE, gains);
+    H5Aclose(one);
+    H5Sclose(space);
+  });
+  EXPECT_THAT(error(), HasSubstr("y_mm has the attribute gain 1, 0.1, 0.2"));
+  const auto set_text = [](hid_t position, const char* name, const std::string& value) {
+    const hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, value.size());
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t one = H5Acreate2(position, name, text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(one, text, value.c_str());
+    H5Aclose(one);
+    H5Sclose(scalar);
+    H5Tclose(text);
+  };
+  written([&](hid_t position) { set_text(position, "gain", "0.01"); });
+  EXPECT_THAT(error(), HasSubstr("y_mm has the attribute gain 0.01"));
+  written([&](hid_t position) { set_text(position, "calibration", "May 2024"); });
+  expect_the_motion(read());
+}
+
+TEST_F(Hdf5, LeavesOutWhatIsFilledIn) {
+  const hid_t file = H5Fcreate(file_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  std::vector<double> packed;
+  for (const double y_mm : y_mm_) packed.push_back((y_mm - 300.0) / 0.25);
+  packed[7] = -9999.0;
+  write_vector(file, "t_s", t_s_);
+  write_vector(file, "u_V", u_V_);
+  write_vector(file, "y_mm", packed);
+  const hid_t position = H5Dopen2(file, "y_mm", H5P_DEFAULT);
+  set_number(position, "scale_factor", 0.25);
+  set_number(position, "add_offset", 300.0);
+  set_number(position, "_FillValue", -9999.0);
+  H5Dclose(position);
+  H5Fclose(file);
+  const Record record = read();
+  for (const double y_m : record.y_m) EXPECT_TRUE(!(y_m < 0.3)) << y_m;
 }
 
 TEST_F(Hdf5, ReadsVectorsOfVersion73) {

@@ -93,23 +93,6 @@ TEST(Changes, AGainThatWarmsUpIsAnExponential) {
   EXPECT_NEAR(d.changing.front().to, 1.05 * kServoGain, 1e-3 * kServoGain);
 }
 
-TEST(Changes, ASensorWhoseScaleDriftsIsNoPlantThatDoes) {
-  const SearchContext context = servo_context(
-      {.rate_mps = [](double u_V, double, double) { return kServoGain * u_V; },
-       .reading_m = [](double y_m, double t_s) { return y_m + 0.01 * t_s / 20.0 * (y_m - 0.3); }});
-  const Diagnosis d = diagnose(context.problem, context.options);
-  EXPECT_EQ(d.verdict, Verdict::changing);
-  EXPECT_THAT(d.missing, IsEmpty());
-  ASSERT_THAT(d.changing, SizeIs(1));
-  const ParameterChange& change = d.changing.front();
-  EXPECT_EQ(change.parameter, "reading_scale.scale_ratio");
-  EXPECT_EQ(change.kind, ChangeKind::ramp);
-  EXPECT_EQ(change.from, 0.0);
-  EXPECT_NEAR(change.to, 0.01, 4.0 * change.to_error);
-  EXPECT_LT(change.to_error, 0.001);
-  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
-}
-
 TEST(Changes, AnOffsetThatStepsLeavesASecondChangeToBeFound) {
   const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
                                                [](double t_s) { return t_s < 6.0 ? 0.08 : 0.12; });
